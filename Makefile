@@ -1,0 +1,44 @@
+# make run    installs what is missing and runs the bias extension test of Fig. 7
+# make test   installs what is missing, checks the code and runs the tests
+# make lint   style and types alone
+
+SHELL := /bin/bash
+.DELETE_ON_ERROR:
+.PHONY: run test lint packages clean
+
+PYTHON := .venv/bin/python
+PACKAGES := $(shell sed 's/\#.*//' apt-packages.txt)
+SUDO := $(shell [ $$(id -u) = 0 ] || echo sudo)
+# One thread each: the matrices are small, and MPI is how more cores are used.
+export OMP_NUM_THREADS ?= 1
+export OPENBLAS_NUM_THREADS ?= 1
+
+run: .venv/installed
+	.venv/bin/pantograph run cases/a_bias_extension.toml
+
+test: lint
+	$(PYTHON) -m pytest
+
+lint: .venv/installed
+	$(PYTHON) -m ruff check .
+	$(PYTHON) -m ruff format --check .
+	$(PYTHON) -m mypy
+
+# Asks dpkg rather than a file: a package may have been removed since.
+packages:
+	@missing=$$(for p in $(PACKAGES); do dpkg-query -W -f='$${Status}' $$p 2>/dev/null \
+		| grep -q 'ok installed' || echo $$p; done); \
+	if [ -n "$$missing" ]; then echo "Installing Debian packages:" $$missing; \
+		$(SUDO) apt-get update -qq && \
+		$(SUDO) env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq \
+			--no-install-recommends $$missing; fi
+
+# Debian's numpy stays: dolfinx and petsc4py are compiled against it.
+.venv/installed: pyproject.toml apt-packages.txt | packages
+	/usr/bin/python3 -m venv --system-site-packages .venv
+	/usr/bin/python3 -c 'import numpy; print("numpy==" + numpy.__version__)' > .venv/constraints.txt
+	.venv/bin/pip install --quiet --constraint .venv/constraints.txt --editable '.[dev]'
+	touch $@
+
+clean:
+	rm -rf .venv results .pytest_cache .mypy_cache .ruff_cache .hypothesis

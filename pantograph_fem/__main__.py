@@ -1,0 +1,5 @@
+"""``python -m pantograph_fem`` is the command ``pantograph``."""
+
+from .cli import main
+
+main()

@@ -1,0 +1,73 @@
+"""Section ``[continuation]``: how the load is raised from 0 to 1."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from .part import Part, finite_numbers
+from .problem import Problem, not_allowed, problem_error
+
+
+def _stops(value: object) -> tuple[float, ...]:
+    """Check the stops and append the full load."""
+    stops = finite_numbers(value)
+    if (
+        stops is None
+        or any(not 0 < stop <= 1 for stop in stops)
+        or any(a >= b for a, b in pairwise(stops))
+    ):
+        rule = "be a list of increasing load fractions, each greater than 0 and at most 1"
+        raise problem_error(Problem(not_allowed(value, rule)))
+    return stops if stops[-1:] == (1.0,) else (*stops, 1.0)
+
+
+def _default_initial_step(fields: dict[str, Any]) -> float:
+    """Follow a smaller `max_step`, which is then the only key to set for smaller steps."""
+    return min(0.1, float(fields.get("max_step", 0.1)))
+
+
+class Continuation(Part):
+    """Load steps and Newton iterations; loads and steps are fractions of the full load.
+
+    Attributes
+    ----------
+    stops
+        Increasing loads at which a state must be saved; the last is 1.
+    max_step, min_step, initial_step
+        Largest, smallest and first step; the first is 0.1, or `max_step` if less, by default.
+    growth, cutback
+        Largest growth of the step after an accepted one; its shrinkage after a rejected one.
+    target_iterations
+        Newton iterations after which the step size is kept.
+    max_iterations
+        Newton iterations after which a step is rejected.
+    tolerance
+        Largest remaining error of a Newton solve, relative to the typical size of each unknown.
+    predictor
+        First guess of a step: along the tangent, along the last secant, or the last state.
+    """
+
+    stops: Annotated[tuple[float, ...], BeforeValidator(_stops)] = (1.0,)
+    max_step: float = Field(default=0.25, gt=0, le=1)
+    min_step: float = Field(default=1e-5, gt=0, le=1)
+    initial_step: float = Field(default_factory=_default_initial_step, gt=0, le=1)
+    growth: float = Field(default=1.5, gt=1)
+    cutback: float = Field(default=0.5, gt=0, lt=1)
+    target_iterations: int = Field(default=4, ge=1)
+    max_iterations: int = Field(default=20, ge=1)
+    tolerance: float = Field(default=1e-8, gt=0, le=1e-3)
+    predictor: Literal["tangent", "secant", "none"] = "tangent"
+
+    @model_validator(mode="after")
+    def _ordered_steps(self) -> Continuation:
+        if not self.min_step <= self.initial_step <= self.max_step:
+            rule = (
+                f"be at least continuation.min_step ({self.min_step}) "
+                f"and at most continuation.max_step ({self.max_step})"
+            )
+            problem = Problem(not_allowed(self.initial_step, rule), ("initial_step",))
+            raise problem_error(problem)
+        return self

@@ -1,0 +1,54 @@
+"""Section ``[discretisation]``: scheme, degrees and regularisation."""
+
+from __future__ import annotations
+
+from typing import Any, Final, Literal
+
+from pydantic import Field, ValidationInfo, field_validator
+
+from .part import Part
+from .problem import Problem, not_allowed, problem_error
+
+_DEGREE: Final = 3
+
+
+def _default_auxiliary_degree(fields: dict[str, Any]) -> int:
+    return int(fields.get("degree", _DEGREE)) - 1
+
+
+def _default_quadrature_degree(fields: dict[str, Any]) -> int:
+    return 2 * int(fields.get("degree", _DEGREE))
+
+
+class Discretisation(Part):
+    """Finite elements of the sheet.
+
+    Attributes
+    ----------
+    scheme
+        How the second gradient is treated.
+    degree
+        Polynomial degree of the displacement.
+    auxiliary_degree
+        Degree of the auxiliary gradient and of its multiplier; one less than `degree` by default.
+    quadrature_degree
+        Degree integrated exactly; twice `degree` by default.
+    shear_regularisation
+        Angle below which the shear energy is rounded off, rad; used only when the tangent of the
+        shear energy is infinite at rest, i.e. for an exponent below 2.
+    """
+
+    scheme: Literal["micromorphic"] = "micromorphic"
+    degree: Literal[2, 3] = _DEGREE
+    auxiliary_degree: int = Field(default_factory=_default_auxiliary_degree, ge=1, le=2)
+    quadrature_degree: int = Field(default_factory=_default_quadrature_degree, ge=2, le=20)
+    shear_regularisation: float = Field(default=1e-4, gt=0)
+
+    @field_validator("auxiliary_degree")
+    @classmethod
+    def _below_degree(cls, value: int, info: ValidationInfo) -> int:
+        degree = info.data.get("degree")
+        if degree is not None and value >= degree:
+            rule = f"be less than discretisation.degree ({degree})"
+            raise problem_error(Problem(not_allowed(value, rule)))
+        return value

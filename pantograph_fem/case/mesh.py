@@ -1,0 +1,88 @@
+"""Section ``[mesh]``: element sizes, or a file with the mesh."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from pydantic import Field, ValidationInfo, field_validator, model_validator
+
+from .grips import Grips
+from .part import Part
+from .problem import Problem, not_allowed, problem_error, value_text
+from .sheet import Sheet
+
+#: Default size inside, over the shorter side of the sheet: 8 mm for the sheet of the paper.
+SIZE_OVER_SIDE = 1 / 8.5
+#: Default size at the corners, over the size inside: 0.5 mm for the sheet of the paper.
+CORNER_SIZE_OVER_SIZE = 1 / 16
+#: Default size along the grips when one is a clamp, over the shorter side: 0.5 mm for the sheet of
+#: the paper, to resolve the layer of thickness sqrt(K_b/K_e) that a clamp makes.
+CLAMP_SIZE_OVER_SIDE = 0.0005 / 0.068
+
+
+class Mesh(Part):
+    """Element sizes of the rectangle, or the file of another mesh.
+
+    In a :class:`~pantograph_fem.case.Case` the sizes have their defaults filled in, unless there
+    is a file.
+
+    Attributes
+    ----------
+    size
+        Element size inside, m.
+    corner_size
+        Element size at the four corners, where the solution is singular, m.
+    grip_size
+        Element size along the two grips, m; None: no refinement along them.
+    file
+        Mesh with the physical groups bottom and top, absolute; a relative path in a case file
+        starts from the folder of that file.
+    """
+
+    size: float | None = Field(default=None, gt=0)
+    corner_size: float | None = Field(default=None, gt=0)
+    grip_size: float | None = Field(default=None, gt=0)
+    file: Path | None = None
+
+    @field_validator("file", mode="before")
+    @classmethod
+    def _existing_file(cls, value: object, info: ValidationInfo) -> Path | None:
+        if value is None:
+            return None
+        if not isinstance(value, str | Path):
+            raise problem_error(Problem(not_allowed(value, "be the path of a mesh, a string")))
+        base = (info.context or {}).get("base") or Path.cwd()
+        path = Path(base, value).resolve()
+        if not path.is_file():
+            text = f"{value_text(str(value))} is not found; there is no file {path}"
+            raise problem_error(Problem(text))
+        return path
+
+    @model_validator(mode="after")
+    def _file_or_sizes(self) -> Mesh:
+        sizes = [key for key in ("size", "corner_size", "grip_size") if getattr(self, key)]
+        if self.file and sizes:
+            text = "not allowed beside mesh.file, whose elements are used as they are"
+            raise problem_error(*(Problem(text, (key,)) for key in sizes))
+        return self
+
+    def with_defaults(self, sheet: Sheet, grips: Grips) -> Mesh:
+        """Fill in the sizes that are not given, and check that none exceeds that inside."""
+        if self.file:
+            return self
+        side = min(sheet.width, sheet.height)
+        size = self.size or SIZE_OVER_SIDE * side
+        corner_size = self.corner_size or CORNER_SIZE_OVER_SIZE * size
+        grip_size = self.grip_size
+        if grip_size is None and grips.clamped:
+            grip_size = min(size, CLAMP_SIZE_OVER_SIDE * side)
+        problems = [
+            Problem(not_allowed(value, f"be at most mesh.size ({size:.6g})"), (key,))
+            for key, value in (("corner_size", corner_size), ("grip_size", grip_size))
+            if value is not None and value > size
+        ]
+        if problems:
+            raise problem_error(*problems)
+        return self.model_copy(
+            update={"size": size, "corner_size": corner_size, "grip_size": grip_size}
+        )

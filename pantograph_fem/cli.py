@@ -1,0 +1,115 @@
+"""The command ``pantograph``."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from . import __version__
+from .errors import PantographError
+
+app = typer.Typer(
+    name="pantograph",
+    help="Simulate pantographic sheets and the nonlinear beams they are made of.",
+    add_completion=False,
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+)
+
+CaseFile = Annotated[Path, typer.Argument(metavar="CASE.toml", help="The case file.")]
+Overrides = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set", metavar="KEY.PATH=VALUE", help="Replace a value of the case; may be repeated."
+    ),
+]
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"pantograph_fem {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _main(
+    version: Annotated[
+        bool,
+        typer.Option("--version", callback=_version, is_eager=True, help="Show the version."),
+    ] = False,
+) -> None:
+    """Simulate pantographic sheets and the nonlinear beams they are made of."""
+
+
+@app.command()
+def run(
+    case_file: CaseFile,
+    output: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="Where results go.", show_default="results/<name>"),
+    ] = None,
+    overrides: Overrides = None,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Show no progress.")] = False,
+) -> None:
+    """Simulate a case; also under mpirun."""
+    from .case import load_case
+
+    case = load_case(case_file, overrides or ())
+    from .run import run as run_case  # dolfinx is imported only for a case that is right
+
+    result = run_case(case, output, quiet=quiet)
+    if result.rows and not quiet:
+        typer.echo(f"Done: {len(result.rows) - 1} steps; results are in {result.directory}")
+
+
+@app.command()
+def check(case_file: CaseFile, overrides: Overrides = None) -> None:
+    """Validate a case without simulating it."""
+    from .case import load_case
+
+    case = load_case(case_file, overrides or ())
+    typer.echo(f"{case_file} is valid: {case.name} ({case.kind})")
+
+
+@app.command()
+def plot(
+    directory: Annotated[Path, typer.Argument(metavar="DIR", help="Results of a run.")],
+) -> None:
+    """Redraw the figures of a finished run."""
+    from .plot import plot as plot_results
+
+    for path in plot_results(directory):
+        typer.echo(path)
+
+
+def main() -> None:
+    """Run the command and turn errors into messages and exit codes."""
+    try:
+        code = app(standalone_mode=False)
+    except PantographError as error:
+        _fail(str(error), error.exit_code)
+    except typer.Abort:
+        _fail("interrupted", 1)
+    except Exception as error:
+        # click's usage errors know how to show themselves
+        show = getattr(error, "show", None)
+        if show is None:
+            raise
+        show()
+        raise SystemExit(2) from None
+    raise SystemExit(code or 0)
+
+
+def _fail(message: str, code: int) -> None:
+    # Under mpirun every rank comes here with the same error; one message is enough.
+    if _rank() == 0:
+        print(message, file=sys.stderr, flush=True)
+    raise SystemExit(code)
+
+
+def _rank() -> int:
+    mpi = sys.modules.get("mpi4py.MPI")
+    return mpi.COMM_WORLD.rank if mpi else 0

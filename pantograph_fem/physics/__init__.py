@@ -1,0 +1,1 @@
+"""The mechanics: kinematics of fibres, energy densities, rigid motions of grips."""

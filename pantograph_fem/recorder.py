@@ -1,0 +1,119 @@
+"""Writes what a run finds: history, fields, figures, summary; and shows its progress."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING
+
+from .case import case_to_toml
+from .parallel import at_root
+from .results.atomic import replace_text
+from .results.fields import FieldsWriter
+from .results.history import HistoryRow, HistoryWriter
+from .results.progress import Progress
+from .results.summary import package_versions, write_summary
+from .simulation import Simulation
+from .solve.continuation import Step
+from .stopwatch import Stopwatch
+
+if TYPE_CHECKING:
+    from mpi4py import MPI
+
+    from .case import Case
+
+
+class Recorder:
+    """Results of one run. Every method is collective; files are written on rank 0.
+
+    Use as a context manager around the path; call :meth:`finish` after it.
+    """
+
+    def __init__(
+        self,
+        case: Case,
+        simulation: Simulation,
+        directory: Path,
+        clock: Stopwatch,
+        comm: MPI.Comm,
+        quiet: bool,
+    ) -> None:
+        self._case = case
+        self._simulation = simulation
+        self._directory = directory
+        self._clock = clock
+        self._comm = comm
+        self._progress = Progress(case.title or case.name, quiet=quiet or comm.rank != 0)
+        self._history: HistoryWriter | None = None
+        self._fields: FieldsWriter | None = None
+        self.rows: list[HistoryRow] = []
+
+    def __enter__(self) -> Recorder:
+        with self._clock("output"):
+            grid = self._simulation.grid()
+            at_root(self._comm, lambda: self._open(grid))
+        self._progress.__enter__()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self._progress.__exit__(kind, error, traceback)
+        if self._history is not None:
+            self._history.close()
+
+    def accepted(self, step: Step) -> None:
+        """Write a state to the history and, if asked for, to the fields."""
+        with self._clock("output"):
+            observation = self._simulation.observe(step)
+            wanted = self._case.output.fields
+            save = wanted == "all" or (wanted == "stops" and step.is_stop)
+
+            def write() -> None:
+                assert observation is not None
+                assert self._history is not None
+                self.rows.append(observation.row)
+                self._history.write(observation.row)
+                if self._fields is not None and save:
+                    self._fields.write(step.load, observation.fields)
+                self._progress.accepted(observation.row, self._clock.total)
+
+            at_root(self._comm, write)
+
+    def rejected(self, load: float, step: float, reason: str) -> None:
+        """Show a step that was cut back."""
+        self._progress.rejected(load, step, reason)
+
+    def finish(self, status: str, message: str = "") -> None:
+        """Draw the figures and write the summary."""
+        at_root(self._comm, lambda: self._finish(status, message))
+
+    def _open(self, grid) -> None:
+        self._directory.mkdir(parents=True, exist_ok=True)
+        (self._directory / "summary.json").unlink(missing_ok=True)
+        replace_text(self._directory / "case.resolved.toml", case_to_toml(self._case))
+        self._history = HistoryWriter(
+            self._directory / "history.csv", len(self._case.output.probes)
+        )
+        if self._case.output.fields != "none":
+            self._fields = FieldsWriter(self._directory, grid)
+
+    def _finish(self, status: str, message: str) -> None:
+        with self._clock("output"):
+            if self._case.output.figures:
+                from .plot import plot
+
+                plot(self._directory)
+        write_summary(
+            self._directory / "summary.json",
+            status=status,
+            message=message,
+            last=self.rows[-1] if self.rows else None,
+            dofs=self._simulation.dofs,
+            cells=self._simulation.cells,
+            seconds={**self._clock.seconds, "total": self._clock.total},
+            versions=package_versions(),
+        )

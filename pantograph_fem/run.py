@@ -1,0 +1,102 @@
+"""One case from start to end: case → simulation → path → results."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from .errors import PathError
+from .recorder import Recorder
+from .results.history import HistoryRow
+from .simulation import build_simulation
+from .solve.continuation import follow
+from .solve.step_size import StepSettings
+from .stopwatch import Stopwatch
+
+if TYPE_CHECKING:
+    from mpi4py import MPI
+
+    from .case import Case
+
+
+@dataclass(frozen=True)
+class RunResult:
+    """Outcome of a run.
+
+    Attributes
+    ----------
+    directory
+        Where the results are.
+    rows
+        A row per accepted step; empty on ranks other than 0.
+    """
+
+    directory: Path
+    rows: tuple[HistoryRow, ...]
+
+
+def run(
+    case: Case,
+    directory: Path | None = None,
+    *,
+    quiet: bool = False,
+    comm: MPI.Comm | None = None,
+) -> RunResult:
+    """Simulate a case and write its results; a collective call.
+
+    Parameters
+    ----------
+    case
+        What to simulate.
+    directory
+        Where results go; ``results/<name>`` by default. Earlier results there are replaced.
+    quiet
+        Show no progress.
+    comm
+        MPI communicator; all processes by default.
+
+    Raises
+    ------
+    CaseError
+        If the mesh or a probe is wrong, which shows only here.
+    PathError
+        If the path could not be followed to the end. The results up to there are complete.
+    """
+    if comm is None:
+        from mpi4py import MPI
+
+        comm = MPI.COMM_WORLD
+    clock = Stopwatch()
+    directory = directory or Path("results") / case.name
+    simulation = build_simulation(case, comm, clock)
+    recorder = Recorder(case, simulation, directory, clock, comm, quiet)
+    steps = follow(
+        simulation.path,
+        simulation.start,
+        _step_settings(case),
+        case.continuation.predictor,
+        recorder.rejected,
+    )
+    try:
+        with recorder:
+            for step in steps:
+                recorder.accepted(step)
+    except PathError as error:
+        recorder.finish(f"stopped: {error}")
+        raise
+    recorder.finish("done")
+    return RunResult(directory, tuple(recorder.rows))
+
+
+def _step_settings(case: Case) -> StepSettings:
+    options = case.continuation
+    return StepSettings(
+        stops=tuple(options.stops),
+        initial_step=options.initial_step,
+        min_step=options.min_step,
+        max_step=options.max_step,
+        growth=options.growth,
+        cutback=options.cutback,
+        target_iterations=options.target_iterations,
+    )

@@ -1,0 +1,69 @@
+"""One field of a (possibly mixed) finite element space, with its place in the state vector."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dolfinx import fem
+
+from .. import dolfinx_api as api
+
+
+@dataclass(frozen=True)
+class Field:
+    """A field of the state.
+
+    Attributes
+    ----------
+    name
+        "displacement", "gradient" or "multiplier".
+    space
+        The field's own space.
+    dofs
+        State dof of each of the field's dofs, shape (blocks, block size), ghosts included.
+    typical
+        Typical size in SI units; solvers measure the field in it.
+    multiplier
+        Whether the energy is stationary but not minimal with respect to it.
+    """
+
+    name: str
+    space: fem.FunctionSpace
+    dofs: NDArray[np.int32]
+    typical: float
+    multiplier: bool = False
+
+    @property
+    def size(self) -> int:
+        """Number of dofs over all processes."""
+        dofmap = self.space.dofmap
+        return dofmap.index_map.size_global * dofmap.index_map_bs
+
+    @property
+    def coordinates(self) -> NDArray[np.float64]:
+        """Reference position of each block, shape (blocks, 2)."""
+        return self.space.tabulate_dof_coordinates()[:, :2]
+
+    def blocks_on(self, facets: NDArray[np.int32]) -> NDArray[np.int32]:
+        """Numbers of the blocks on some facets; a collective call."""
+        return fem.locate_dofs_topological(self.space, 1, facets)
+
+
+def fields_of(
+    space: fem.FunctionSpace, typical: dict[str, float], multipliers: tuple[str, ...] = ()
+) -> tuple[Field, ...]:
+    """Fields of a space in the order of `typical`, which gives their names and sizes."""
+    fields = []
+    for index, (name, size) in enumerate(typical.items()):
+        if space.num_sub_spaces and len(typical) > 1:
+            own, dofs = space.sub(index).collapse()
+        else:
+            own = space
+            dofs = np.arange(api.local_size(space))
+        block_size = own.dofmap.index_map_bs
+        place = np.asarray(dofs, dtype=np.int32).reshape(-1, block_size)
+        fields.append(Field(name, own, place, size, name in multipliers))
+    return tuple(fields)

@@ -1,0 +1,63 @@
+r"""The paper's scheme: an auxiliary gradient tied to ∇u by a Lagrange multiplier.
+
+.. math:: \Pi(\mathbf u, \mathbf H, \boldsymbol\Lambda) = \int_\Omega
+    W_1(\mathbf I + \nabla\mathbf u) + W_2(\mathbf I + \mathbf H)
+    + \boldsymbol\Lambda : (\nabla\mathbf u - \mathbf H)\ d\Omega
+
+W1 holds stretch and shear, W2 bending, which takes one derivative of H instead of two of u.
+
+H and Λ share one continuous space: bending stiffens only :math:`\partial_\alpha(\mathbf H\mathbf
+D_\alpha)`, so every dof of H needs a multiplier to hold it, and a poorer Λ leaves the system
+singular. Stretch and shear take ∇u, which keeps the system stable where bending is weak.
+"""
+
+from __future__ import annotations
+
+import ufl
+
+from dolfinx import fem, mesh
+
+from .. import dolfinx_api as api
+from ..physics.energy import SheetEnergy
+from .discretisation import Discretisation, Scales, integration
+from .field import fields_of
+
+
+def micromorphic(
+    domain: mesh.Mesh,
+    energy: SheetEnergy,
+    scales: Scales,
+    *,
+    degree: int,
+    auxiliary_degree: int,
+    quadrature_degree: int,
+) -> Discretisation:
+    """Discretise (31) with u in P(degree), H and Λ in P(auxiliary_degree).
+
+    The stationary point is a saddle: as many negative pivots as multiplier dofs at a stable state.
+    """
+    tensor = api.lagrange(auxiliary_degree, (2, 2))
+    space = api.functionspace(domain, api.mixed([api.lagrange(degree, (2,)), tensor, tensor]))
+    state = fem.Function(space, name="state")
+    u, H, Lambda = ufl.split(state)
+    identity = ufl.Identity(2)
+    densities = energy.first_gradient_densities(
+        identity + ufl.grad(u)
+    ) | energy.second_gradient_densities(identity + H)
+    tie = ufl.inner(Lambda, ufl.grad(u) - H)
+    dx = integration(quadrature_degree)
+    return Discretisation(
+        state=state,
+        fields=fields_of(
+            space,
+            {"displacement": scales.length, "gradient": 1.0, "multiplier": scales.stiffness},
+            multipliers=("multiplier",),
+        ),
+        functional=(sum(densities.values()) + tie) * dx,
+        energy=energy,
+        densities=densities,
+        displacement=u,
+        curvatures=energy.curvatures(identity + H),
+        measure=dx,
+        scales=scales,
+    )

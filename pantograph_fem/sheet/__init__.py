@@ -1,0 +1,1 @@
+"""The sheet as a boundary value problem: a discretised energy held by two grips."""

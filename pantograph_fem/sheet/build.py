@@ -1,0 +1,111 @@
+"""From a case to the discrete problem: mesh, energy, scheme and grips."""
+
+from __future__ import annotations
+
+import math
+
+from mpi4py import MPI
+
+from dolfinx import fem
+
+from ..case import Case
+from ..case.grips import Grip as GripCase
+from ..mesh import Triangulation, read_mesh, rectangle
+from ..parallel import at_root
+from ..physics.energy import SheetEnergy, sheet_energy
+from ..physics.rigid_motion import RigidMotion
+from ..schemes import Discretisation, Scales, first_gradient, micromorphic
+from .domain import GRIPS, Domain, distribute
+from .grip import Grip
+
+
+def build_domain(case: Case, comm: MPI.Comm) -> Domain:
+    """Mesh the sheet, or read its mesh, and distribute it; a collective call."""
+    return distribute(comm, at_root(comm, lambda: triangulate(case)))
+
+
+def triangulate(case: Case) -> Triangulation:
+    """The mesh that the case asks for."""
+    options = case.mesh
+    if options.file is not None:
+        return read_mesh(options.file)
+    assert options.size is not None and options.corner_size is not None  # filled in by the case
+    return rectangle(
+        case.sheet.width,
+        case.sheet.height,
+        options.size,
+        options.corner_size,
+        (options.grip_size, options.grip_size),
+    )
+
+
+def build_energy(case: Case, domain: Domain) -> SheetEnergy:
+    """Energy (31) of the effects that the case names, with coefficients that can change."""
+    material = case.material
+    return sheet_energy(
+        constant=lambda value: fem.Constant(domain.mesh, float(value)),
+        fibre_angle=math.radians(case.sheet.fibre_angle),
+        stretch=material.stretch_pair,
+        bending=material.bending_pair,
+        shear=material.shear if material.has_shear else None,
+        exponent=material.shear_exponent,
+        regularisation=case.discretisation.shear_regularisation,
+    )
+
+
+def discretise(case: Case, domain: Domain) -> Discretisation:
+    """The scheme applied to the energy; without bending the displacement is all there is."""
+    energy = build_energy(case, domain)
+    options = case.discretisation
+    scales = _scales(case, domain)
+    if not energy.second_gradient:
+        return first_gradient(
+            domain.mesh,
+            energy,
+            scales,
+            degree=options.degree,
+            quadrature_degree=options.quadrature_degree,
+        )
+    return micromorphic(
+        domain.mesh,
+        energy,
+        scales,
+        degree=options.degree,
+        auxiliary_degree=options.auxiliary_degree,
+        quadrature_degree=options.quadrature_degree,
+    )
+
+
+def build_grips(case: Case, domain: Domain) -> list[Grip]:
+    """Both grips, in the order of :data:`GRIPS`."""
+    return [_grip(getattr(case.grips, name), domain, name) for name in GRIPS]
+
+
+def _grip(grip: GripCase, domain: Domain, name: str) -> Grip:
+    left, right = domain.ends[name]
+    centre = (left + right) / 2
+    pivots = {"left": left, "right": right, "centre": centre}
+    pivot = pivots[grip.pivot] if isinstance(grip.pivot, str) else grip.pivot
+    motion = RigidMotion(
+        translation=(float(grip.translation[0]), float(grip.translation[1])),
+        angle=math.radians(grip.rotation),
+        pivot=(float(pivot[0]), float(pivot[1])),
+    )
+    return Grip(
+        facets=domain.facets[name],
+        motion=motion,
+        clamp=grip.hold == "clamp",
+        centre=(float(centre[0]), float(centre[1])),
+    )
+
+
+def _scales(case: Case, domain: Domain) -> Scales:
+    """Extent of the sheet, and the largest stiffness there is, in N/m."""
+    material = case.material
+    in_plane = max(material.stretch_pair or (0.0,))
+    stiffness = max(
+        in_plane,
+        material.shear or 0.0,
+        max(material.bending_pair or (0.0,)) / domain.extent**2,
+    )
+    return Scales(length=domain.extent, stiffness=stiffness)

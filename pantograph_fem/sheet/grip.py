@@ -1,0 +1,87 @@
+"""Grips: boundary edges that move as rigid bodies, and what they exert on the sheet."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..physics.rigid_motion import QUARTER_TURN, RigidMotion
+from ..schemes import Discretisation
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Grip:
+    """One grip.
+
+    Attributes
+    ----------
+    facets
+        Local numbers of the edges it holds.
+    motion
+        Its motion with the load factor.
+    clamp
+        Whether it holds the placement gradient as well as the position.
+    centre
+        Middle of the held edges in the reference, m; moments are taken about its current place.
+    """
+
+    facets: NDArray[np.int32]
+    motion: RigidMotion
+    clamp: bool
+    centre: tuple[float, float]
+
+
+class HeldDofs:
+    """The dofs that a grip holds, their values and their virtual motions.
+
+    Arrays over the held dofs have the order of :attr:`dofs`.
+    """
+
+    def __init__(self, grip: Grip, discretisation: Discretisation) -> None:
+        self._motion = grip.motion
+        self._centre = np.array([grip.centre])
+        displacement = discretisation.field("displacement")
+        assert displacement is not None  # every scheme has one
+        blocks = displacement.blocks_on(grip.facets)
+        self._X = displacement.coordinates[blocks]
+        dofs = [displacement.dofs[blocks]]
+        self._gradients = 0
+        gradient = discretisation.field("gradient")
+        if grip.clamp and gradient is not None:
+            blocks = gradient.blocks_on(grip.facets)
+            dofs.append(gradient.dofs[blocks])
+            self._gradients = len(blocks)
+        self.dofs = np.concatenate([part.ravel() for part in dofs])
+
+    def values(self, load: float) -> Array:
+        """Prescribed values: u, and H = R - I where the gradient is held."""
+        return self._collect(
+            self._motion.displacement(self._X, load), self._motion.rotation(load) - np.eye(2)
+        )
+
+    def rates(self, load: float) -> Array:
+        """Derivatives of the values with respect to the load factor."""
+        return self._collect(
+            self._motion.displacement_rate(self._X, load), self._motion.rotation_rate(load)
+        )
+
+    def virtual_translation(self, direction: int) -> Array:
+        """Unit translation of the grip along x (0) or y (1): its work is the force."""
+        v = np.zeros_like(self._X)
+        v[:, direction] = 1.0
+        return self._collect(v, np.zeros((2, 2)))
+
+    def virtual_rotation(self, load: float) -> Array:
+        """Unit rotation about the grip's current centre: its work is the moment."""
+        x = self._X + self._motion.displacement(self._X, load)
+        centre = self._centre + self._motion.displacement(self._centre, load)
+        return self._collect(
+            (x - centre) @ QUARTER_TURN.T, QUARTER_TURN @ self._motion.rotation(load)
+        )
+
+    def _collect(self, displacements: Array, gradient: Array) -> Array:
+        return np.concatenate([displacements.ravel(), np.tile(gradient.ravel(), self._gradients)])

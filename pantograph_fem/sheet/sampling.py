@@ -1,0 +1,94 @@
+"""Fields of a state on the nodes of a fine output grid, gathered on rank 0."""
+
+from __future__ import annotations
+
+import numpy as np
+import ufl
+from numpy.typing import NDArray
+
+from dolfinx import mesh
+
+from .. import dolfinx_api as api
+from ..schemes import Discretisation
+
+Array = NDArray[np.float64]
+
+#: A quadratic triangle as four straight ones; nodes 3, 4, 5 lie opposite vertices 0, 1, 2.
+_QUARTERS = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2], [3, 4, 5]])
+
+
+class FieldSampler:
+    """Evaluates a discretisation's displacement and observables.
+
+    The output grid has the nodes of quadratic triangles, joined by straight ones: a quarter of
+    the size, so that curved fields look curved. Fields with jumps between elements are averaged
+    at the nodes, each element weighing as its area.
+    """
+
+    def __init__(self, discretisation: Discretisation, domain: mesh.Mesh) -> None:
+        self._domain = domain
+        self._comm = domain.comm
+        observables = discretisation.observables()
+        self._names = tuple(observables)
+        values = [discretisation.displacement[0], discretisation.displacement[1]]
+        values += observables.values()
+        self._nodes = api.functionspace(domain, api.lagrange(2, (len(values),)))
+        self._expression = api.expression(
+            ufl.as_vector(values), api.interpolation_points(self._nodes)
+        )
+        self._cells = np.arange(domain.topology.index_map(2).size_local, dtype=np.int32)
+        self._dofs = api.cell_dofs(self._nodes)[self._cells]
+        self._areas = self._cell_areas()
+        self._sum = api.create_vector(self._nodes)
+        self._weights = self._accumulate(np.ones((*self._dofs.shape, len(values))))
+
+    def grid(self) -> tuple[Array, NDArray[np.int64]] | None:
+        """Points (n, 2) and triangles (m, 3) on rank 0, None elsewhere; a collective call."""
+        index_map = self._nodes.dofmap.index_map
+        numbers = index_map.local_to_global(self._dofs.ravel().astype(np.int32))
+        cells = np.asarray(numbers).reshape(self._dofs.shape)
+        triangles = self._comm.gather(cells[:, _QUARTERS].reshape(-1, 3), root=0)
+        points = self._gather(self._nodes.tabulate_dof_coordinates()[:, :2])
+        if triangles is None or points is None:
+            return None
+        merged = np.concatenate(triangles)
+        return points, _anticlockwise(points, merged)
+
+    def sample(self) -> dict[str, Array] | None:
+        """Fields of the discretisation's present state on rank 0, None elsewhere; collective."""
+        raw = api.evaluate(self._expression, self._domain, self._cells)
+        values = raw.reshape(*self._dofs.shape, -1)
+        gathered = self._gather(self._accumulate(values) / self._weights)
+        if gathered is None:
+            return None
+        fields = {"displacement": gathered[:, :2]}
+        fields.update({name: gathered[:, 2 + i] for i, name in enumerate(self._names)})
+        return fields
+
+    def _accumulate(self, values: Array) -> Array:
+        """Area-weighted sums at all local nodes of values of shape (cells, nodes, components)."""
+        components = values.shape[2]
+        sums = self._sum.array.reshape(-1, components)
+        sums[:] = 0.0
+        np.add.at(sums, self._dofs, values * self._areas[:, None, None])
+        api.scatter_reverse_add(self._sum)
+        return sums.copy()
+
+    def _gather(self, local: Array) -> Array | None:
+        """Rows of the owned nodes of every process, in global order, on rank 0."""
+        owned = self._nodes.dofmap.index_map.size_local
+        parts = self._comm.gather(local[:owned], root=0)
+        return None if parts is None else np.concatenate(parts)
+
+    def _cell_areas(self) -> Array:
+        vertices = api.cell_vertices(self._domain)[self._cells]
+        x = self._domain.geometry.x[vertices][:, :, :2]
+        a, b = x[:, 1] - x[:, 0], x[:, 2] - x[:, 0]
+        return 0.5 * np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+
+
+def _anticlockwise(points: Array, triangles: NDArray[np.int64]) -> NDArray[np.int64]:
+    a, b, c = (points[triangles[:, i]] for i in range(3))
+    area = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
+    triangles[area < 0] = triangles[area < 0][:, ::-1]
+    return triangles

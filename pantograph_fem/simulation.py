@@ -1,0 +1,51 @@
+"""What a run needs of a simulation, whatever is simulated."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+from .results.fields import FieldGrid
+from .results.history import HistoryRow
+from .solve.continuation import Array, Equilibrium, Step
+from .stopwatch import Stopwatch
+
+if TYPE_CHECKING:
+    from mpi4py import MPI
+
+    from .case import Case
+
+
+@dataclass(frozen=True, eq=False)
+class Observation:
+    """What is reported of a state: a row of ``history.csv`` and nodal fields by name."""
+
+    row: HistoryRow
+    fields: dict[str, Array]
+
+
+class Simulation(Protocol):
+    """A problem to follow, and how to look at its states. Every method is collective."""
+
+    path: Equilibrium
+    cells: int
+    dofs: dict[str, int]
+
+    @property
+    def start(self) -> Array:
+        """The state at load factor 0."""
+
+    def grid(self) -> FieldGrid | None:
+        """Nodes of the fields on rank 0, None elsewhere."""
+
+    def observe(self, step: Step) -> Observation | None:
+        """Numbers and fields of a state on rank 0, None elsewhere."""
+
+
+def build_simulation(case: Case, comm: MPI.Comm, clock: Stopwatch) -> Simulation:
+    """The simulation of a case's kind; only that kind's code is imported."""
+    if case.kind == "sheet":
+        from .sheet.simulation import SheetSimulation
+
+        return SheetSimulation(case, comm, clock)
+    raise NotImplementedError(case.kind)

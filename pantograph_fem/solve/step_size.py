@@ -1,0 +1,66 @@
+"""Load steps that grow after easy solves, shrink after hard ones and hit the stops exactly."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+#: A load closer to a stop than this is the stop: rounding of the sums of steps.
+_ROUNDING = 1e-12
+
+
+@dataclass(frozen=True)
+class StepSettings:
+    """Rules for the step size, all in load factor.
+
+    Attributes
+    ----------
+    stops
+        Increasing loads at which a state must be found; the last ends the path.
+    initial_step, min_step, max_step
+        First, smallest and largest step.
+    growth, cutback
+        Largest growth after an accepted step; shrinkage after a rejected one.
+    target_iterations
+        Newton iterations after which the step size is kept.
+    """
+
+    stops: tuple[float, ...] = (1.0,)
+    initial_step: float = 0.1
+    min_step: float = 1e-5
+    max_step: float = 0.25
+    growth: float = 1.5
+    cutback: float = 0.5
+    target_iterations: int = 4
+
+
+class StepSize:
+    """The current step size of a path."""
+
+    def __init__(self, settings: StepSettings) -> None:
+        self.settings = settings
+        self.value = settings.initial_step
+
+    def next_load(self, load: float) -> float:
+        """Where to go from `load`: equal steps, none above the step size, up to the next stop."""
+        stop = next(s for s in self.settings.stops if s > load + _ROUNDING)
+        steps = math.ceil((stop - load) / self.value - _ROUNDING)
+        return stop if steps <= 1 else load + (stop - load) / steps
+
+    def finished(self, load: float) -> bool:
+        """Whether `load` is the last stop."""
+        return load >= self.settings.stops[-1] - _ROUNDING
+
+    def accepted(self, iterations: int) -> None:
+        """Adapt to a step that was accepted after so many iterations."""
+        s = self.settings
+        factor = s.target_iterations / max(iterations, 1)
+        self.value *= min(max(factor, s.cutback), s.growth)
+        self.value = min(max(self.value, s.min_step), s.max_step)
+
+    def rejected(self, tried: float) -> bool:
+        """Cut back after a step of size `tried` failed; False when it was the smallest."""
+        if tried <= self.settings.min_step * (1 + _ROUNDING):
+            return False
+        self.value = max(tried * self.settings.cutback, self.settings.min_step)
+        return True
