@@ -6,8 +6,10 @@ Everything else calls the functions here, which carry the names of newer release
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
+import logging
+from collections.abc import Callable, Sequence
+from functools import wraps
+from typing import Any, TypeVar
 
 import numpy as np
 import ufl
@@ -27,6 +29,25 @@ _COMPILER_FLAGS = ["-O3", "-g0", "-march=native", "-fno-math-errno"]
 _COMPILER_TIMEOUT = 600
 _JIT = {"cffi_extra_compile_args": _COMPILER_FLAGS, "timeout": _COMPILER_TIMEOUT}
 
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+def _compiles(function: F) -> F:
+    """Keep the C compiler's command lines, logged by cffi at INFO, off the user's terminal."""
+
+    @wraps(function)
+    def quiet(*args: Any, **kwargs: Any) -> Any:
+        root = logging.getLogger()
+        disabled, level = root.manager.disable, root.level
+        logging.disable(logging.INFO)
+        try:
+            return function(*args, **kwargs)
+        finally:
+            logging.disable(disabled)
+            root.setLevel(level)
+
+    return quiet  # type: ignore[return-value]
+
 
 def versions() -> dict[str, str]:
     """Versions of the libraries that a result depends on."""
@@ -41,6 +62,7 @@ def atan2(y: Any, x: Any) -> Any:
     return ufl.atan_2(y, x)
 
 
+@_compiles
 def create_triangle_mesh(
     comm: MPI.Comm, points: NDArray[np.float64], triangles: NDArray[np.int64]
 ) -> mesh.Mesh:
@@ -81,6 +103,7 @@ def mixed(elements: Sequence[Any]) -> Any:
     return ufl.MixedElement(*elements)
 
 
+@_compiles
 def functionspace(domain: mesh.Mesh, element: Any) -> fem.FunctionSpace:
     """Finite element space of `element` on `domain`."""
     return fem.FunctionSpace(domain, element)
@@ -114,11 +137,13 @@ def interpolation_points(space: fem.FunctionSpace) -> NDArray[np.float64]:
     return space.element.interpolation_points()
 
 
+@_compiles
 def form(expression: ufl.Form) -> fem.FormMetaClass:
     """Compile a form, or take it from the cache."""
     return fem.form(expression, jit_params=_JIT)
 
 
+@_compiles
 def expression(value: Any, points: NDArray[np.float64]) -> fem.Expression:
     """Compile the evaluation of a UFL expression at reference points of a cell."""
     return fem.Expression(value, points, jit_params=_JIT)

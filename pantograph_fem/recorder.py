@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from .case import case_to_toml
 from .parallel import at_root
 from .results.atomic import replace_text
-from .results.fields import FieldsWriter
+from .results.fields import FieldGrid, FieldsWriter
 from .results.history import HistoryRow, HistoryWriter
 from .results.progress import Progress
 from .results.summary import package_versions, write_summary
@@ -91,14 +91,14 @@ class Recorder:
         """Draw the figures and write the summary."""
         at_root(self._comm, lambda: self._finish(status, message))
 
-    def _open(self, grid) -> None:
+    def _open(self, grid: FieldGrid | None) -> None:
         self._directory.mkdir(parents=True, exist_ok=True)
         (self._directory / "summary.json").unlink(missing_ok=True)
         replace_text(self._directory / "case.resolved.toml", case_to_toml(self._case))
         self._history = HistoryWriter(
             self._directory / "history.csv", len(self._case.output.probes)
         )
-        if self._case.output.fields != "none":
+        if self._case.output.fields != "none" and grid is not None:
             self._fields = FieldsWriter(self._directory, grid)
 
     def _finish(self, status: str, message: str) -> None:

@@ -27,9 +27,12 @@ class Observation:
 class Simulation(Protocol):
     """A problem to follow, and how to look at its states. Every method is collective."""
 
-    path: Equilibrium
     cells: int
     dofs: dict[str, int]
+
+    @property
+    def path(self) -> Equilibrium:
+        """The problem for continuation."""
 
     @property
     def start(self) -> Array:

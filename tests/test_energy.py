@@ -102,6 +102,7 @@ def test_equibiaxial_stress(lam):
 def test_picture_frame_force():
     """Sides along the fibres, pulled by the corner until the fibres have turned by ψ."""
     side, psi = 0.1, 0.5
+
     # Fibre stretches stay 1; the frame's diagonals change with the angle between the fibres.
     def energy_of(angle):
         half = (math.pi / 2 - angle) / 2

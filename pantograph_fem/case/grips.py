@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Annotated, Literal
 
 from pydantic import BeforeValidator
@@ -47,11 +46,6 @@ class Grip(Part):
     translation: Point = (0.0, 0.0)
     rotation: float = 0.0
     pivot: Pivot = "centre"
-
-    @property
-    def rotation_radians(self) -> float:
-        """Rotation at full load, rad anticlockwise."""
-        return math.radians(self.rotation)
 
 
 class Grips(Part):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 from pydantic import Field
 
 from .part import Part
@@ -23,8 +21,3 @@ class Sheet(Part):
     width: float = Field(gt=0)
     height: float = Field(gt=0)
     fibre_angle: float = 45.0
-
-    @property
-    def fibre_angle_radians(self) -> float:
-        """Angle from x to the first family, rad."""
-        return math.radians(self.fibre_angle)

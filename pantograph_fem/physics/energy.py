@@ -90,7 +90,9 @@ class SheetEnergy:
         if not self.bending:
             return {}
         kappas = self.curvatures(F)
-        return {"bending": sum(bending_density(kappas[family], K_b) for family, K_b in self.bending)}
+        return {
+            "bending": sum(bending_density(kappas[family], K_b) for family, K_b in self.bending)
+        }
 
     def curvatures(self, F: Expr) -> tuple[Expr, Expr]:
         """Curvatures of both families, 1/m."""

@@ -29,7 +29,9 @@ def triangulate(case: Case) -> Triangulation:
     options = case.mesh
     if options.file is not None:
         return read_mesh(options.file)
-    assert options.size is not None and options.corner_size is not None  # filled in by the case
+    # The case has filled in both.
+    assert options.size is not None
+    assert options.corner_size is not None
     return rectangle(
         case.sheet.width,
         case.sheet.height,

@@ -43,25 +43,27 @@ class Domain:
 
 def distribute(comm: MPI.Comm, triangulation: Triangulation | None) -> Domain:
     """Make the mesh on all processes from rank 0's triangulation; a collective call."""
+    shared = None
+    points, triangles = np.empty((0, 2)), np.empty((0, 3), dtype=np.int64)
+    edges, tags = np.empty((0, 2), dtype=np.int64), np.empty(0, dtype=np.int32)
     if triangulation is not None:
-        points = triangulation.points
-        edges = [triangulation.edges[name] for name in GRIPS]
-        held = [points[np.unique(pairs)] for pairs in edges]
+        points, triangles = triangulation.points, triangulation.triangles
+        by_grip = [triangulation.edges[name] for name in GRIPS]
+        edges = np.concatenate(by_grip)
+        tags = np.repeat(np.arange(len(GRIPS), dtype=np.int32), [len(pairs) for pairs in by_grip])
         ends = {
-            # Sorted by x, then y: "left" and "right" are meant of an edge that runs along x.
-            name: np.array([min(map(tuple, p)), max(map(tuple, p))])
-            for name, p in zip(GRIPS, held, strict=True)
+            name: _ends(points[np.unique(pairs)])
+            for name, pairs in zip(GRIPS, by_grip, strict=True)
         }
-        extent = float(np.hypot(*np.ptp(points, axis=0)))
-        tags = np.repeat(np.arange(len(GRIPS), dtype=np.int32), [len(pairs) for pairs in edges])
-        data = (points, triangulation.triangles, np.concatenate(edges), tags)
-        shared = (ends, extent)
-    else:
-        data = (np.empty((0, 2)), np.empty((0, 3)), np.empty((0, 2)), np.empty(0, np.int32))
-        shared = None
+        shared = (ends, float(np.hypot(*np.ptp(points, axis=0))))
     ends, extent = comm.bcast(shared, root=0)
-    points, triangles, edges_of_all, tags = data
     domain = api.create_triangle_mesh(comm, points, triangles)
-    facet_tags = api.tagged_facets(domain, edges_of_all, tags)
+    facet_tags = api.tagged_facets(domain, edges, tags)
     facets = {name: facet_tags.find(tag) for tag, name in enumerate(GRIPS)}
     return Domain(domain, facets, ends, extent)
+
+
+def _ends(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Leftmost and rightmost of some points; the lower one first where a grip runs along y."""
+    order = np.lexsort((points[:, 1], points[:, 0]))
+    return points[order[[0, -1]]]

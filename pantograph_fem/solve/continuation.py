@@ -110,14 +110,13 @@ def follow(
         number += 1
         linearisation = problem.linearise(correction.x, load)
         points = [points[-1], PathPoint(load, correction.x, linearisation.rate)]
-        yield Step(
-            number, load, correction.x, correction.iterations, linearisation, load in stops
-        )
+        yield Step(number, load, correction.x, correction.iterations, linearisation, load in stops)
 
 
 def _give_up(last: float, load: float, reason: str) -> str:
     return (
         f"No equilibrium was found beyond load factor {last:.6g}: the smallest step, to "
         f"{load:.6g}, failed because {reason}. Every state up to {last:.6g} is saved. "
-        "Try a smaller continuation.min_step, a larger continuation.max_iterations, or a finer mesh."
+        "Try a smaller continuation.min_step, a larger continuation.max_iterations, "
+        "or a finer mesh."
     )

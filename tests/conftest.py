@@ -1,0 +1,65 @@
+"""Small sheets that tests share."""
+
+import copy
+import os
+
+import pytest
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+os.environ.setdefault("OMPI_ALLOW_RUN_AS_ROOT", "1")
+os.environ.setdefault("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
+
+#: Case a on a mesh that is too coarse to be accurate and fine enough to be exact mechanics.
+COARSE = {
+    "name": "coarse",
+    "kind": "sheet",
+    "sheet": {"width": 0.068, "height": 0.204},
+    "material": {
+        "stretch": 1.34e5,
+        "bending": 1.92e-2,
+        "shear": 1.59e2,
+        "shear_exponent": 1.36,
+    },
+    "grips": {"top": {"translation": [0.0, 0.03]}},
+    "mesh": {"size": 0.02, "corner_size": 0.01},
+}
+
+
+def merged(base, changes):
+    """A copy of nested tables with some values replaced; None removes a key."""
+    result = copy.deepcopy(base)
+    for key, value in changes.items():
+        if value is None:
+            result.pop(key, None)
+        elif isinstance(value, dict) and isinstance(result.get(key), dict):
+            result[key] = merged(result[key], value)
+        else:
+            result[key] = value
+    return result
+
+
+@pytest.fixture
+def coarse_case():
+    """Make a variant of the coarse case from nested changes."""
+    from pantograph_fem.case import case_from_dict
+
+    return lambda **changes: case_from_dict(merged(COARSE, changes))
+
+
+@pytest.fixture
+def coarse_path(coarse_case):
+    """Follow the path of a variant; returns the equilibrium and its accepted steps."""
+    from mpi4py import MPI
+
+    from pantograph_fem.sheet.simulation import SheetSimulation
+    from pantograph_fem.solve.continuation import follow
+    from pantograph_fem.solve.step_size import StepSettings
+    from pantograph_fem.stopwatch import Stopwatch
+
+    def path(stops=(1.0,), max_step=0.25, **changes):
+        simulation = SheetSimulation(coarse_case(**changes), MPI.COMM_SELF, Stopwatch())
+        settings = StepSettings(stops=stops, max_step=max_step)
+        return simulation, list(follow(simulation.path, simulation.start, settings))
+
+    return path

@@ -1,0 +1,239 @@
+"""The discrete equilibrium of a sheet: derivatives, invariances, inertia, effects."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from dolfinx import fem
+from mpi4py import MPI
+from pantograph_fem import dolfinx_api as api
+from pantograph_fem.case import case_from_dict
+from pantograph_fem.physics.rigid_motion import QUARTER_TURN, RigidMotion
+from pantograph_fem.sheet.build import build_domain, build_grips, discretise
+from pantograph_fem.sheet.equilibrium import SheetEquilibrium
+
+from .conftest import COARSE, merged
+
+
+def build(**changes):
+    case = case_from_dict(merged(COARSE, changes))
+    domain = build_domain(case, MPI.COMM_SELF)
+    discretisation = discretise(case, domain)
+    return SheetEquilibrium(discretisation, build_grips(case, domain))
+
+
+@pytest.fixture(scope="module")
+def sheet():
+    return build()
+
+
+def components(equilibrium, x, name):
+    """View of one field of a state, shape (blocks, components)."""
+    return x[equilibrium.discretisation.field(name).dofs]
+
+
+def random_state(equilibrium, seed, size=0.05):
+    """A state with stretches, shear and curvatures of a few per cent in typical sizes."""
+    rng = np.random.default_rng(seed)
+    x = size * rng.standard_normal(equilibrium.undeformed().shape)
+    sizes = equilibrium.typical_sizes.copy()
+    displacement = equilibrium.discretisation.field("displacement")
+    sizes[displacement.dofs.ravel()] = 0.005  # of the mesh size, or elements turn inside out
+    return x * sizes
+
+
+def moved(equilibrium, x, motion):
+    """The state after a superposed rigid motion: χ → Rχ + c, F → RF, Λ → RΛ."""
+    y = x.copy()
+    d = equilibrium.discretisation
+    R = motion.rotation(1.0)
+    u = d.field("displacement")
+    X = u.coordinates
+    current = X + components(equilibrium, x, "displacement")
+    y[u.dofs] = current + motion.displacement(current, 1.0) - X
+    for name, reference in (("gradient", np.eye(2)), ("multiplier", np.zeros((2, 2)))):
+        dofs = d.field(name).dofs
+        F = reference + x[dofs].reshape(-1, 2, 2)
+        y[dofs] = (R @ F - reference).reshape(-1, 4)
+    return y
+
+
+def potential(equilibrium, x):
+    equilibrium.load_state(x)
+    return fem.assemble_scalar(api.form(equilibrium.discretisation.functional))
+
+
+def free_residual(equilibrium, x):
+    r = equilibrium.matrix().createVecLeft()
+    equilibrium.residual(x, r)
+    return r.array.copy()
+
+
+motions = st.builds(
+    RigidMotion,
+    translation=st.tuples(st.floats(-1, 1), st.floats(-1, 1)),
+    angle=st.floats(-3.1, 3.1),
+    pivot=st.just((0.01, 0.02)),
+)
+
+
+@given(motions)
+@settings(max_examples=20, deadline=None)
+def test_a_rigid_motion_stores_and_resists_nothing(sheet, motion):
+    x = moved(sheet, sheet.undeformed(), motion)
+    assert sum(sheet.energies(x).values()) < 1e-12
+    assert np.abs(free_residual(sheet, x)).max() < 1e-9
+
+
+@given(motions, st.integers(0, 2**32 - 1))
+@settings(max_examples=20, deadline=None)
+def test_potential_is_frame_indifferent(sheet, motion, seed):
+    x = random_state(sheet, seed)
+    y = moved(sheet, x, motion)
+    assert potential(sheet, y) == pytest.approx(potential(sheet, x), rel=1e-9, abs=1e-9)
+    for effect, energy in sheet.energies(x).items():
+        assert sheet.energies(y)[effect] == pytest.approx(energy, rel=1e-9)
+
+
+def taylor_rate(remainder):
+    """Order of a Taylor remainder as the step is halved."""
+    coarse, fine = remainder(1e-5), remainder(5e-6)
+    return np.log2(coarse / fine)
+
+
+@pytest.mark.parametrize(("sabotage", "rate"), [(1.0, 2.0), (1.01, 1.0)])
+def test_residual_is_the_derivative_of_the_potential(sheet, sabotage, rate):
+    """Off by 1 %, the remainder would be of first order: the test can tell."""
+    x, v = random_state(sheet, 1), random_state(sheet, 2)
+    v[sheet._owned_dofs] = 0.0
+    slope = sabotage * free_residual(sheet, x) @ v
+
+    def remainder(h):
+        return abs(potential(sheet, x + h * v) - potential(sheet, x) - h * slope)
+
+    assert taylor_rate(remainder) == pytest.approx(rate, abs=0.1)
+
+
+@pytest.mark.parametrize(("sabotage", "rate"), [(1.0, 2.0), (1.01, 1.0)])
+def test_tangent_is_the_derivative_of_the_residual(sheet, sabotage, rate):
+    x, v = random_state(sheet, 3), random_state(sheet, 4)
+    v[sheet._owned_dofs] = 0.0
+    A = sheet.matrix()
+    sheet.tangent(x, A)
+    direction, product = A.createVecLeft(), A.createVecLeft()
+    direction.array[:] = v
+    A.mult(direction, product)
+    slope = sabotage * product.array
+    start = free_residual(sheet, x)
+
+    def remainder(h):
+        return np.linalg.norm(free_residual(sheet, x + h * v) - start - h * slope)
+
+    assert taylor_rate(remainder) == pytest.approx(rate, abs=0.1)
+
+
+def test_tangent_is_symmetric(sheet):
+    A = sheet.matrix()
+    sheet.tangent(random_state(sheet, 5), A)
+    difference = A.copy()
+    difference.axpy(-1.0, A.copy().transpose())
+    assert difference.norm() < 1e-12 * A.norm()
+
+
+@pytest.mark.parametrize("sabotage", [1.0, 1.01])
+def test_load_rate_is_the_tangent_of_the_path(coarse_path, sabotage):
+    simulation, steps = coarse_path(
+        stops=(0.499, 0.5, 0.501, 1.0),
+        grips={"top": {"translation": [0.01, 0.02], "rotation": 20.0}},
+    )
+    before, here, after = (s for s in steps if s.load in (0.499, 0.5, 0.501))
+    sizes = simulation._equilibrium.typical_sizes
+    difference = (after.x - before.x) / 0.002 / sizes
+    rate = sabotage * here.linearisation.rate / sizes
+    error = np.abs(difference - rate).max() / np.abs(rate).max()
+    assert (error < 1e-4) == (sabotage == 1.0)
+
+
+def test_work_of_the_grip_is_the_stored_energy(coarse_path):
+    """dE/dt = f · d + m θ for a grip that is moved and turned about a point of its own."""
+    angle, d = 25.0, np.array([0.01, 0.02])
+    pivot = np.array([0.05, 0.25])
+    simulation, steps = coarse_path(
+        stops=(0.698, 0.699, 0.7, 0.701, 0.702, 1.0),
+        grips={"top": {"translation": d.tolist(), "rotation": angle, "pivot": pivot.tolist()}},
+    )
+    near = {round(s.load, 6): s for s in steps}
+    equilibrium = simulation._equilibrium
+    E = [sum(equilibrium.energies(near[t].x).values()) for t in (0.698, 0.699, 0.701, 0.702)]
+    power = (E[0] - 8 * E[1] + 8 * E[2] - E[3]) / 0.012
+    reaction = equilibrium.reactions(near[0.7].x, 0.7)[1]
+    theta = np.radians(angle)
+    motion = RigidMotion(tuple(d), theta, tuple(pivot))
+    centre = np.array([[0.034, 0.204]])
+    velocity = motion.displacement_rate(centre, 0.7)[0]
+    assert np.dot(reaction.force, velocity) + reaction.moment * theta == pytest.approx(
+        power, rel=1e-6
+    )
+
+
+def test_reactions_of_the_two_grips_balance(coarse_path):
+    simulation, steps = coarse_path(grips={"top": {"translation": [0.01, 0.02], "rotation": 15.0}})
+    bottom, top = simulation._equilibrium.reactions(steps[-1].x, 1.0)
+    f0, f1 = np.array(bottom.force), np.array(top.force)
+    np.testing.assert_allclose(f0 + f1, 0.0, atol=1e-6 * np.abs(f1).max())
+    arm = np.array([0.0, 0.204]) + [0.01, 0.02]
+    torque = top.moment + bottom.moment + arm @ (-QUARTER_TURN @ f1)
+    assert torque == pytest.approx(0.0, abs=1e-6 * abs(top.moment))
+
+
+def test_inertia_is_that_of_the_dense_tangent(coarse_path):
+    simulation, steps = coarse_path(mesh={"size": 0.034, "corner_size": 0.034})
+    equilibrium = simulation._equilibrium
+    A = equilibrium.matrix()
+    last = steps[-1]
+    equilibrium.tangent(last.x, A)
+    scale = equilibrium.typical_sizes
+    dense = A.getValues(range(A.size[0]), range(A.size[0])) * np.outer(scale, scale)
+    eigenvalues = np.linalg.eigvalsh(dense)
+    assert last.linearisation.negative_pivots == (eigenvalues < 0).sum()
+    assert last.linearisation.stable
+    assert last.linearisation.expected_negative_pivots == simulation.dofs["multiplier"]
+
+
+def test_only_effects_with_a_stiffness_make_fields():
+    full = build().discretisation
+    assert [field.name for field in full.fields] == ["displacement", "gradient", "multiplier"]
+    assert set(full.densities) == {"stretch", "shear", "bending"}
+    assert full.field("gradient").size == full.field("multiplier").size
+
+    for bending in (None, 0.0):
+        plain = build(material={"bending": bending}).discretisation
+        assert [field.name for field in plain.fields] == ["displacement"]
+        assert plain.field("displacement").size == full.field("displacement").size
+        assert plain.multiplier_dofs == 0
+        assert plain.curvatures is None
+        assert set(plain.densities) == {"stretch", "shear"}
+
+    no_shear = build(material={"shear": None, "shear_exponent": None}).discretisation
+    assert set(no_shear.densities) == {"stretch", "bending"}
+
+
+def test_an_absent_effect_leaves_no_coefficient_in_the_form():
+    def constants(**material):
+        return len(build(material=material).discretisation.functional.constants())
+
+    # cos and sin of the fibre angle; K_e and K_b of two families; K_p, γ, δ
+    assert constants() == 2 + 2 + 2 + 3
+    assert constants(shear_exponent=2.0) == 2 + 2 + 2 + 1
+    assert constants(shear=None, shear_exponent=None) == 2 + 2 + 2
+    assert constants(bending=None) == 2 + 2 + 3
+    assert constants(stretch=[1e5, 0.0]) == 2 + 1 + 2 + 3
+
+
+def test_degrees_are_selectable():
+    for degree, auxiliary in ((2, 1), (3, 1), (3, 2)):
+        d = build(discretisation={"degree": degree, "auxiliary_degree": auxiliary}).discretisation
+        assert d.state.function_space.ufl_element().degree() == degree
+        assert d.field("gradient").space.ufl_element().degree() == auxiliary
+        assert d.field("multiplier").space.ufl_element() == d.field("gradient").space.ufl_element()
