@@ -93,7 +93,8 @@ class Recorder:
 
     def _open(self, grid: FieldGrid | None) -> None:
         self._directory.mkdir(parents=True, exist_ok=True)
-        (self._directory / "summary.json").unlink(missing_ok=True)
+        for stale in ("summary.json", "fields.xdmf", "fields.h5"):
+            (self._directory / stale).unlink(missing_ok=True)
         replace_text(self._directory / "case.resolved.toml", case_to_toml(self._case))
         self._history = HistoryWriter(
             self._directory / "history.csv", len(self._case.output.probes)

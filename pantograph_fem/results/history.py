@@ -1,0 +1,185 @@
+"""The table ``history.csv``: one row per accepted step."""
+
+from __future__ import annotations
+
+import csv
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import CaseError
+from .atomic import replace_text
+
+INTEGERS = ("step", "newton_iterations", "negative_pivots", "expected_negative_pivots")
+
+
+@dataclass(frozen=True)
+class HistoryRow:
+    """An accepted state in numbers.
+
+    Attributes
+    ----------
+    step
+        Number of the step, from 0 or 1 as the path counts them.
+    load
+        Load factor t.
+    force
+        Force that the top grip exerts on the sheet, in N.
+    moment
+        Moment that it exerts about its current centre, in N m.
+    energies
+        Energy in J by effect: "stretch", "bending", "shear"; an absent effect counts as 0.
+    newton_iterations
+        Iterations of the step.
+    negative_pivots, expected_negative_pivots
+        Negative pivots of the tangent, and their number at a stable state.
+    stable
+        Whether the state is stable.
+    shear_min, shear_max
+        Extreme shear angles, in rad.
+    probes
+        Displacement (ux, uy) in m at each reference point of ``output.probes``.
+    """
+
+    step: int
+    load: float
+    force: tuple[float, float]
+    moment: float
+    energies: dict[str, float]
+    newton_iterations: int
+    negative_pivots: int
+    expected_negative_pivots: int
+    stable: bool
+    shear_min: float
+    shear_max: float
+    probes: tuple[tuple[float, float], ...] = ()
+
+    @property
+    def energy(self) -> float:
+        """Energy of all effects, in J."""
+        return sum(self.energies.values())
+
+    def columns(self) -> dict[str, int | float]:
+        """Return the row by column name, in the order of ``history.csv``; `stable` is 1 or 0."""
+        row: dict[str, int | float] = {
+            "step": int(self.step),
+            "load": float(self.load),
+            "force_x": float(self.force[0]),
+            "force_y": float(self.force[1]),
+            "moment": float(self.moment),
+            "energy": float(self.energy),
+            "energy_stretch": float(self.energies.get("stretch", 0.0)),
+            "energy_bending": float(self.energies.get("bending", 0.0)),
+            "energy_shear": float(self.energies.get("shear", 0.0)),
+            "newton_iterations": int(self.newton_iterations),
+            "negative_pivots": int(self.negative_pivots),
+            "expected_negative_pivots": int(self.expected_negative_pivots),
+            "stable": int(self.stable),
+            "shear_min": float(self.shear_min),
+            "shear_max": float(self.shear_max),
+        }
+        for i, (ux, uy) in enumerate(self.probes):
+            row[f"probe{i}_ux"] = float(ux)
+            row[f"probe{i}_uy"] = float(uy)
+        return row
+
+
+def header(probes: int) -> list[str]:
+    """Return the column names of a table with so many probes."""
+    origin = ((0.0, 0.0),) * probes
+    return list(HistoryRow(0, 0.0, (0.0, 0.0), 0.0, {}, 0, 0, 0, True, 0.0, 0.0, origin).columns())
+
+
+class HistoryWriter:
+    """Write ``history.csv`` row by row; each row is on disk when `write` returns.
+
+    Parameters
+    ----------
+    path
+        The file. An earlier one is replaced.
+    probes
+        Number of probes.
+    kept
+        Number of rows already in the file to go on from; later ones are dropped.
+
+    Raises
+    ------
+    CaseError
+        If the file has fewer than `kept` rows, or other columns.
+    """
+
+    def __init__(self, path: Path, probes: int, kept: int = 0) -> None:
+        self._header = header(probes)
+        lines = [",".join(self._header)]
+        if kept:
+            old = _complete_lines(path)[: kept + 1]
+            if old[:1] != lines or len(old) < kept + 1:
+                raise CaseError(
+                    f"{path} cannot be continued after {kept} rows: it has fewer, or other columns"
+                )
+            lines = old
+        path.parent.mkdir(parents=True, exist_ok=True)
+        replace_text(path, "\n".join(lines) + "\n")
+        self._file = path.open("a", encoding="utf-8")
+
+    def write(self, row: HistoryRow) -> None:
+        """Add a row, with floats in full precision."""
+        columns = row.columns()
+        if list(columns) != self._header:
+            raise ValueError(f"the row has {len(row.probes)} probes, unlike the table")
+        self._file.write(",".join(repr(value) for value in columns.values()) + "\n")
+        self._file.flush()
+        os.fsync(self._file.fileno())
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+    def __enter__(self) -> HistoryWriter:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.close()
+
+
+def read_history(path: Path) -> dict[str, NDArray[Any]]:
+    """Read a table as one array per column: counts as integers, `stable` as booleans.
+
+    Raises
+    ------
+    CaseError
+        If there is no such file, or it is not a table of a run.
+    """
+    rows = list(csv.reader(_complete_lines(path)))
+    if not rows or not set(header(0)) <= set(rows[0]):
+        raise CaseError(f"{path} is not the history of a run: its columns are not those expected")
+    try:
+        table = np.array(rows[1:], dtype=float).reshape(len(rows) - 1, len(rows[0]))
+    except ValueError as error:
+        raise CaseError(f"{path} is damaged: {error}") from error
+    history: dict[str, NDArray[Any]] = dict(zip(rows[0], table.T, strict=True))
+    for name in INTEGERS:
+        history[name] = history[name].astype(int)
+    history["stable"] = history["stable"].astype(bool)
+    return history
+
+
+def _complete_lines(path: Path) -> list[str]:
+    # A run killed while it wrote leaves a last line without its end.
+    try:
+        text = path.read_text(encoding="utf-8")
+    except FileNotFoundError as error:
+        raise CaseError(
+            f"{path} is missing. It is written by `pantograph run CASE.toml`."
+        ) from error
+    return text[: text.rfind("\n") + 1].splitlines()

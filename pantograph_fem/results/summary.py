@@ -1,0 +1,92 @@
+"""The file ``summary.json``: how a run ended, what it cost and what it ran on."""
+
+from __future__ import annotations
+
+import json
+import platform
+import sys
+from collections.abc import Mapping
+from importlib import metadata
+from pathlib import Path
+
+from .atomic import replace_text
+from .history import HistoryRow
+
+PHASES = ("mesh", "compile", "assemble", "solve", "output", "total")
+
+# Names of the distributions, which are not always those of the modules.
+PACKAGES = {
+    "pantograph_fem": "pantograph_fem",
+    "dolfinx": "fenics-dolfinx",
+    "ufl": "fenics-ufl",
+    "petsc4py": "petsc4py",
+    "mpi4py": "mpi4py",
+    "gmsh": "gmsh",
+    "numpy": "numpy",
+}
+
+
+def write_summary(
+    path: Path,
+    *,
+    status: str,
+    last: HistoryRow | None,
+    dofs: Mapping[str, int],
+    cells: int,
+    seconds: Mapping[str, float],
+    versions: Mapping[str, str],
+    message: str = "",
+) -> None:
+    """Write ``summary.json`` in one step, so that it is never half a file.
+
+    Parameters
+    ----------
+    path
+        The file.
+    status
+        "done", or "stopped: " and the reason.
+    last
+        The last accepted state, None if there was none; written with the columns of
+        ``history.csv``.
+    dofs
+        Number of degrees of freedom by field.
+    cells
+        Number of cells of the mesh.
+    seconds
+        Wall time by phase, see `PHASES`; a phase that is not given took no time.
+    versions
+        Version by package, as `package_versions` returns them.
+    message
+        What the user was told at the end.
+
+    Raises
+    ------
+    ValueError
+        If the status or a phase is none of those above.
+    """
+    if status != "done" and not status.startswith("stopped: "):
+        raise ValueError(f'status is {status!r}; allowed are "done" and "stopped: <reason>"')
+    if unknown := set(seconds) - set(PHASES):
+        raise ValueError(f"unknown phases {sorted(unknown)}; allowed are {', '.join(PHASES)}")
+    summary = {
+        "status": status,
+        "message": message,
+        "last": None if last is None else last.columns(),
+        "dofs": {name: int(number) for name, number in dofs.items()},
+        "cells": int(cells),
+        "seconds": {phase: round(float(seconds.get(phase, 0.0)), 3) for phase in PHASES},
+        "versions": dict(versions),
+    }
+    replace_text(path, json.dumps(summary, indent=2, ensure_ascii=False) + "\n")
+
+
+def package_versions() -> dict[str, str]:
+    """Return the versions of Python and of the packages a run rests on, importing none."""
+    versions = {"python": platform.python_version()}
+    for name, distribution in PACKAGES.items():
+        try:
+            versions[name] = metadata.version(distribution)
+        except metadata.PackageNotFoundError:
+            # Debian's gmsh is no distribution; the module knows, if the run has needed it
+            versions[name] = getattr(sys.modules.get(name), "__version__", "unknown")
+    return versions

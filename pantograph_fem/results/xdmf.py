@@ -1,0 +1,105 @@
+"""The index ``fields.xdmf``: which arrays of ``fields.h5`` make up the state at which load."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from xml.etree.ElementTree import Element, SubElement, indent, parse, tostring
+
+from .atomic import replace_text
+
+Shape = tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Dataset:
+    """An array in an HDF5 file beside the index: its file, its path in it and its shape."""
+
+    file: str
+    path: str
+    shape: Shape
+
+
+@dataclass(frozen=True)
+class StateEntry:
+    """A state in the index: its load factor, and the path of each field's array by name."""
+
+    load: float
+    paths: dict[str, str]
+
+
+class XdmfIndex:
+    """An XDMF 3 collection of states of one grid, in memory; `save` writes it."""
+
+    def __init__(self, points: Dataset, triangles: Dataset) -> None:
+        self._points = points
+        self._triangles = triangles
+        self._root = Element("Xdmf", Version="3.0")
+        self._states = SubElement(
+            SubElement(self._root, "Domain"),
+            "Grid",
+            Name="sheet",
+            GridType="Collection",
+            CollectionType="Temporal",
+        )
+
+    def add(self, load: float, fields: Mapping[str, Dataset]) -> None:
+        """Add a state; a field is a scalar or a vector on the nodes, as its shape says."""
+        # Every state names the points and triangles again rather than by XInclude, which readers
+        # support unevenly; the arrays themselves are stored once.
+        state = SubElement(self._states, "Grid", Name="state", GridType="Uniform")
+        SubElement(state, "Time", Value=repr(load))
+        cells = str(self._triangles.shape[0])
+        topology = SubElement(state, "Topology", TopologyType="Triangle", NumberOfElements=cells)
+        _add_item(topology, self._triangles, "Int")
+        geometry = SubElement(state, "Geometry", GeometryType="XYZ")
+        _add_item(geometry, self._points, "Float")
+        for name, dataset in fields.items():
+            kind = "Scalar" if len(dataset.shape) == 1 else "Vector"
+            attribute = SubElement(state, "Attribute", Name=name, AttributeType=kind, Center="Node")
+            _add_item(attribute, dataset, "Float")
+
+    def save(self, path: Path) -> None:
+        """Write the index, replacing an earlier one in one step."""
+        indent(self._root)
+        replace_text(path, f'<?xml version="1.0"?>\n{tostring(self._root, "unicode")}\n')
+
+
+def read_index(path: Path) -> list[StateEntry]:
+    """Read the states that an index written by `XdmfIndex` lists.
+
+    Raises
+    ------
+    ValueError, LookupError, SyntaxError
+        If it is none.
+    """
+    return [
+        StateEntry(
+            load=float(_child(state, "Time").attrib["Value"]),
+            paths={
+                attribute.attrib["Name"]: (attribute.findtext("DataItem") or "").split(":")[1]
+                for attribute in state.findall("Attribute")
+            },
+        )
+        for state in _child(parse(path).getroot(), "Domain/Grid").findall("Grid")
+    ]
+
+
+def _child(element: Element, tag: str) -> Element:
+    found = element.find(tag)
+    if found is None:
+        raise LookupError(f"<{element.tag}> has no <{tag}>")
+    return found
+
+
+def _add_item(parent: Element, dataset: Dataset, number: str) -> None:
+    item = SubElement(
+        parent,
+        "DataItem",
+        DataType=number,
+        Precision="8",
+        Dimensions=" ".join(map(str, dataset.shape)),
+        Format="HDF",
+    )
+    item.text = f"{dataset.file}:{dataset.path}"
