@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 from typing import Annotated
@@ -58,6 +59,9 @@ def run(
     from .case import load_case
 
     case = load_case(case_file, overrides or ())
+    # The fronts of the factorisation are small: threads cost more than they bring.
+    for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+        os.environ.setdefault(threads, "1")
     from .run import run as run_case  # dolfinx is imported only for a case that is right
 
     result = run_case(case, output, quiet=quiet)

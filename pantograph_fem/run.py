@@ -99,4 +99,5 @@ def _step_settings(case: Case) -> StepSettings:
         growth=options.growth,
         cutback=options.cutback,
         target_iterations=options.target_iterations,
+        critical_step=options.critical_step,
     )

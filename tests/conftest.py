@@ -1,7 +1,12 @@
 """Small sheets that tests share."""
 
 import copy
+import itertools
+import json
 import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -63,3 +68,47 @@ def coarse_path(coarse_case):
         return simulation, list(follow(simulation.path, simulation.start, settings))
 
     return path
+
+
+@dataclass(frozen=True)
+class Solved:
+    """What a run left: its rows, and the last state's fields on the nodes X of the output grid."""
+
+    directory: Path
+    rows: tuple[Any, ...]
+    X: Any
+    fields: dict[str, Any]
+
+    @property
+    def last(self):
+        return self.rows[-1]
+
+    @property
+    def displacement(self):
+        return self.fields["displacement"]
+
+    @property
+    def summary(self):
+        return json.loads((self.directory / "summary.json").read_text())
+
+
+@pytest.fixture(scope="session")
+def solve(tmp_path_factory):
+    """Run a variant of the coarse case with quadratic displacements, from case to results."""
+    from pantograph_fem.case import case_from_dict
+    from pantograph_fem.results.fields import read_fields
+    from pantograph_fem.run import run
+
+    base = merged(
+        COARSE,
+        {"discretisation": {"degree": 2}, "output": {"figures": False, "fields": "stops"}},
+    )
+    folder, numbers = tmp_path_factory.mktemp("solved"), itertools.count()
+
+    def solved(**changes):
+        case = case_from_dict(merged(base, changes))
+        result = run(case, folder / str(next(numbers)), quiet=True)
+        states = read_fields(result.directory)
+        return Solved(result.directory, result.rows, states.grid.points, states.fields(-1))
+
+    return solved

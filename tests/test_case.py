@@ -43,7 +43,7 @@ def test_defaults() -> None:
         "pivot": "centre",
     }
     assert case.continuation.stops == (1.0,)
-    assert case.continuation.initial_step == 0.1
+    assert case.continuation.initial_step == 0.05
     assert case.output.probes == ()
 
 
@@ -68,27 +68,27 @@ def test_stiffness_is_a_number_or_one_per_family() -> None:
     assert material.bending_pair == (2.0, 0.0)
 
 
-def test_default_mesh_sizes_of_the_paper_are_8_mm_and_half_a_millimetre() -> None:
+def test_default_mesh_sizes_follow_the_paper_s_sheet() -> None:
     mesh = case_from_dict(tables()).mesh
-    assert mesh.size == pytest.approx(0.008)
-    assert mesh.corner_size == pytest.approx(0.0005)
+    assert mesh.size == pytest.approx(0.068 / 11)
+    assert mesh.corner_size == pytest.approx(0.068 / 440)
     assert mesh.grip_size is None
 
 
 def test_default_corner_size_follows_the_size() -> None:
-    mesh = case_from_dict(tables(mesh={"size": 0.0032})).mesh
+    mesh = case_from_dict(tables(mesh={"size": 0.008})).mesh
     assert mesh.corner_size == pytest.approx(0.0002)
 
 
 def test_default_sizes_follow_the_shorter_side() -> None:
-    mesh = case_from_dict(tables(sheet={"width": 1.7, "height": 0.85})).mesh
+    mesh = case_from_dict(tables(sheet={"width": 1.7, "height": 1.1})).mesh
     assert mesh.size == pytest.approx(0.1)
 
 
 @pytest.mark.parametrize("side", ["bottom", "top"])
 def test_a_clamp_refines_the_mesh_along_the_grips(side: str) -> None:
     clamped = tables(grips={side: {"hold": "clamp"}})
-    assert case_from_dict(clamped).mesh.grip_size == pytest.approx(0.0005)
+    assert case_from_dict(clamped).mesh.grip_size == pytest.approx(0.001)
     fine = case_from_dict(clamped | {"mesh": {"size": 0.0001}}).mesh
     assert fine.grip_size == fine.size
     given_size = case_from_dict(clamped | {"mesh": {"grip_size": 0.002}}).mesh
@@ -97,7 +97,7 @@ def test_a_clamp_refines_the_mesh_along_the_grips(side: str) -> None:
 
 def test_degrees_follow_the_degree_of_the_displacement() -> None:
     cubic = case_from_dict(tables()).discretisation
-    assert (cubic.degree, cubic.auxiliary_degree, cubic.quadrature_degree) == (3, 2, 6)
+    assert (cubic.degree, cubic.auxiliary_degree, cubic.quadrature_degree) == (3, 2, 5)
     quadratic = case_from_dict(tables(discretisation={"degree": 2})).discretisation
     assert (quadratic.auxiliary_degree, quadratic.quadrature_degree) == (1, 4)
 

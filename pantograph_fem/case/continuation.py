@@ -26,7 +26,7 @@ def _stops(value: object) -> tuple[float, ...]:
 
 def _default_initial_step(fields: dict[str, Any]) -> float:
     """Follow a smaller `max_step`, which is then the only key to set for smaller steps."""
-    return min(0.1, float(fields.get("max_step", 0.1)))
+    return min(0.05, float(fields.get("max_step", 0.05)))
 
 
 class Continuation(Part):
@@ -37,11 +37,13 @@ class Continuation(Part):
     stops
         Increasing loads at which a state must be saved; the last is 1.
     max_step, min_step, initial_step
-        Largest, smallest and first step; the first is 0.1, or `max_step` if less, by default.
+        Largest, smallest and first step; the first is 0.05, or `max_step` if less, by default.
     growth, cutback
         Largest growth of the step after an accepted one; its shrinkage after a rejected one.
     target_iterations
-        Newton iterations after which the step size is kept.
+        Newton iterations (tangents factorised) after which the step size is kept.
+    critical_step
+        Step within which a loss of stability is pinned down before it is believed.
     max_iterations
         Newton iterations after which a step is rejected.
     tolerance
@@ -57,7 +59,8 @@ class Continuation(Part):
     growth: float = Field(default=1.5, gt=1)
     cutback: float = Field(default=0.5, gt=0, lt=1)
     target_iterations: int = Field(default=4, ge=1)
-    max_iterations: int = Field(default=20, ge=1)
+    critical_step: float = Field(default=1e-3, gt=0, le=1)
+    max_iterations: int = Field(default=15, ge=1)
     tolerance: float = Field(default=1e-8, gt=0, le=1e-3)
     predictor: Literal["tangent", "secant", "none"] = "tangent"
 

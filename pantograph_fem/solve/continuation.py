@@ -85,6 +85,10 @@ def follow(
     A step that fails leaves no trace: the next try sets out from the last accepted state.
     `on_rejected` is told the load, the step and the reason.
 
+    A long step may pass from a stable branch to an unstable one that is none of its
+    continuation. So the first unstable state is accepted only after a step of at most
+    `settings.critical_step`: then the path itself has lost stability.
+
     Raises
     ------
     PathError
@@ -96,6 +100,7 @@ def follow(
     yield Step(0, 0.0, start, 0, at_start, is_stop=False)
     points = [PathPoint(0.0, start, at_start.rate)]
     number = 0
+    stable = at_start.stable
     while not size.finished(points[-1].load):
         last = points[-1].load
         load = size.next_load(last)
@@ -106,9 +111,18 @@ def follow(
             if not size.rejected(load - last):
                 raise PathError(_give_up(last, load, correction.reason))
             continue
-        size.accepted(correction.iterations)
-        number += 1
         linearisation = problem.linearise(correction.x, load)
+        if (
+            stable
+            and not linearisation.stable
+            and size.rejected(load - last, settings.critical_step)
+        ):
+            if on_rejected is not None:
+                on_rejected(load, load - last, "the state found is unstable")
+            continue
+        size.accepted(correction.iterations)
+        stable = linearisation.stable
+        number += 1
         points = [points[-1], PathPoint(load, correction.x, linearisation.rate)]
         yield Step(number, load, correction.x, correction.iterations, linearisation, load in stops)
 

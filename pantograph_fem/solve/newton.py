@@ -14,6 +14,11 @@ from .factorisation import Factorisation
 
 Array = NDArray[np.float64]
 
+#: Errors, in typical sizes, above which an old factor is not trusted.
+_NEAR = 1e-2
+#: A bound that is never met in practice: each step with an old factor contracts the error.
+_STEPS_PER_TANGENT = 10
+
 
 @dataclass(frozen=True)
 class NewtonSettings:
@@ -24,19 +29,27 @@ class NewtonSettings:
     tolerance
         Largest remaining error of any unknown, in its typical size.
     max_iterations
-        Iterations after which a solve has failed.
+        Tangents after which a solve has failed.
     line_search
         PETSc's name: "bt" shortens steps until the residual norm falls, "basic" never does.
+    contraction
+        A factor is used again while each step leaves at most this share of the error; 0 makes
+        every step a full Newton step.
     """
 
     tolerance: float = 1e-8
-    max_iterations: int = 20
+    max_iterations: int = 15
     line_search: str = "bt"
+    contraction: float = 0.2
 
 
 @dataclass(frozen=True)
 class NewtonResult:
-    """What a solve ended with: the residual norms are those of the scaled system."""
+    """What a solve ended with.
+
+    `iterations` counts the tangents that were factorised, which is what a solve costs;
+    `residuals` holds the norm of the scaled residual before each step and after the last.
+    """
 
     x: Array
     converged: bool
@@ -55,6 +68,9 @@ class NewtonSolver:
     with the last factor (Deuflhard's simplified Newton correction), is below the tolerance.
     Unlike a residual norm this depends neither on the mesh size nor on the quality of the
     predictor. That correction, being at hand, is then applied.
+
+    Comparing such corrections tells how well the factor at hand still contracts the error. While
+    it does well no new one is made: a back-substitution costs a tenth of a factorisation.
     """
 
     def __init__(
@@ -88,6 +104,11 @@ class NewtonSolver:
         self._error = matrix.createVecLeft()
         self._x = matrix.createVecLeft()
         self._residuals: list[float] = []
+        self._last_error = np.inf
+        self._tangents = 0
+        self._factorised = False
+        self._reuse = True
+        self._keep = False
 
         self._snes = PETSc.SNES().create(matrix.comm)
         self._factorisation = Factorisation(self._snes.getKSP(), matrix)
@@ -95,7 +116,7 @@ class NewtonSolver:
         self._snes.setJacobian(self._fill_tangent, matrix)
         self._snes.setConvergenceTest(self._test_convergence)
         # SNES compares its own residual tolerances nowhere: the test above replaces them.
-        self._snes.setTolerances(max_it=self.settings.max_iterations)
+        self._snes.setTolerances(max_it=_STEPS_PER_TANGENT * self.settings.max_iterations)
         options = PETSc.Options()
         name = "snes_linesearch_type"
         prefix = f"pantograph_{id(self):x}_"
@@ -106,7 +127,18 @@ class NewtonSolver:
 
     def solve(self, guess: Array) -> NewtonResult:
         """Iterate from a guess that satisfies the constraints; `guess` is not changed."""
+        self._reuse = self.settings.contraction > 0
+        result = self._solve(guess)
+        if self._reuse and not result.converged and result.iterations < len(result.residuals) - 1:
+            # A direction from an old factor may be none in which the residual falls.
+            self._reuse = False
+            result = self._solve(guess)
+        return result
+
+    def _solve(self, guess: Array) -> NewtonResult:
         self._residuals.clear()
+        self._tangents = 0
+        self._last_error = np.inf
         self._error.set(0.0)
         self._x.array[:] = guess / self._scale.array
         try:
@@ -117,10 +149,11 @@ class NewtonSolver:
             code, reason = -3, f"the tangent could not be factorised ({error})"
         if code > 0:
             self._x.axpy(-1.0, self._error)
+        self._factorised = code > 0  # the factor of a failed iterate estimates nothing
         return NewtonResult(
             x=self._x.array * self._scale.array,
             converged=code > 0,
-            iterations=self._snes.getIterationNumber(),
+            iterations=self._tangents,
             reason=reason,
             residuals=tuple(self._residuals),
         )
@@ -128,8 +161,10 @@ class NewtonSolver:
     def factorise(self, x: Array) -> Factorisation:
         """Factorise the tangent at x; valid until the next solve."""
         self._x.array[:] = x / self._scale.array
+        self._keep = False
         self._fill_tangent(self._snes, self._x, self._matrix, self._matrix)
         self._factorisation.update()
+        self._factorised = True
         return self._factorisation
 
     def back_substitute(self, load: Array) -> Array:
@@ -146,9 +181,13 @@ class NewtonSolver:
         r.scale(1.0 / self._energy)
 
     def _fill_tangent(self, _: PETSc.SNES, x: PETSc.Vec, A: PETSc.Mat, P: PETSc.Mat) -> None:
+        if self._keep:  # PETSc sees that the matrix has not changed, and keeps its factor
+            return
         self._tangent(x.array_r * self._scale.array, P)
         P.diagonalScale(self._scale, self._scale)
         P.scale(1.0 / self._energy)
+        self._tangents += 1
+        self._factorised = True  # SNES factorises what it asked for before anything else
 
     def _test_convergence(
         self, snes: PETSc.SNES, iteration: int, norms: tuple[float, float, float]
@@ -160,14 +199,18 @@ class NewtonSolver:
             return reasons.DIVERGED_FNORM_NAN
         if residual == 0.0:
             return reasons.CONVERGED_FNORM_ABS
-        if iteration == 0:
+        if not self._factorised or (iteration == 0 and not self._reuse):
+            self._keep = False
             return reasons.ITERATING
         self._factorisation.solve(snes.getFunction()[0], self._error)
         error = self._error.norm(PETSc.NormType.NORM_INFINITY)
         if error <= self.settings.tolerance:
             return reasons.CONVERGED_SNORM_RELATIVE
-        if iteration >= self.settings.max_iterations:
+        if self._tangents >= self.settings.max_iterations:
             return reasons.DIVERGED_MAX_IT
+        contracts = error <= self.settings.contraction * min(self._last_error, _NEAR)
+        self._keep = self._reuse and contracts
+        self._last_error = error
         return reasons.ITERATING
 
 

@@ -23,15 +23,18 @@ class StepSettings:
         Largest growth after an accepted step; shrinkage after a rejected one.
     target_iterations
         Newton iterations after which the step size is kept.
+    critical_step
+        Step within which a loss of stability is pinned down before it is believed.
     """
 
     stops: tuple[float, ...] = (1.0,)
-    initial_step: float = 0.1
+    initial_step: float = 0.05
     min_step: float = 1e-5
     max_step: float = 0.25
     growth: float = 1.5
     cutback: float = 0.5
     target_iterations: int = 4
+    critical_step: float = 1e-3
 
 
 class StepSize:
@@ -58,9 +61,9 @@ class StepSize:
         self.value *= min(max(factor, s.cutback), s.growth)
         self.value = min(max(self.value, s.min_step), s.max_step)
 
-    def rejected(self, tried: float) -> bool:
+    def rejected(self, tried: float, smallest: float | None = None) -> bool:
         """Cut back after a step of size `tried` failed; False when it was the smallest."""
-        if tried <= self.settings.min_step * (1 + _ROUNDING):
+        if tried <= (smallest or self.settings.min_step) * (1 + _ROUNDING):
             return False
         self.value = max(tried * self.settings.cutback, self.settings.min_step)
         return True
