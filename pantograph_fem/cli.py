@@ -53,6 +53,9 @@ def run(
         typer.Option(metavar="DIR", help="Where results go.", show_default="results/<name>"),
     ] = None,
     overrides: Overrides = None,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on from the last state of an interrupted run.")
+    ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="Show no progress.")] = False,
 ) -> None:
     """Simulate a case; also under mpirun."""
@@ -64,9 +67,9 @@ def run(
         os.environ.setdefault(threads, "1")
     from .run import run as run_case  # dolfinx is imported only for a case that is right
 
-    result = run_case(case, output, quiet=quiet)
+    result = run_case(case, output, resume=resume, quiet=quiet)
     if result.rows and not quiet:
-        typer.echo(f"Done: {len(result.rows) - 1} steps; results are in {result.directory}")
+        typer.echo(f"Done: {result.rows[-1].step} steps; results are in {result.directory}")
 
 
 @app.command()

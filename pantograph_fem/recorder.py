@@ -6,7 +6,9 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING
 
+from . import checkpoint
 from .case import case_to_toml
+from .checkpoint import Saved
 from .parallel import at_root
 from .results.atomic import replace_text
 from .results.fields import FieldGrid, FieldsWriter
@@ -37,6 +39,7 @@ class Recorder:
         clock: Stopwatch,
         comm: MPI.Comm,
         quiet: bool,
+        resumed: Saved | None = None,
     ) -> None:
         self._case = case
         self._simulation = simulation
@@ -46,6 +49,9 @@ class Recorder:
         self._progress = Progress(case.title or case.name, quiet=quiet or comm.rank != 0)
         self._history: HistoryWriter | None = None
         self._fields: FieldsWriter | None = None
+        self._kept_rows = resumed.rows if resumed else 0
+        self._kept_states = resumed.states if resumed else 0
+        self._states = self._kept_states
         self.rows: list[HistoryRow] = []
 
     def __enter__(self) -> Recorder:
@@ -70,18 +76,22 @@ class Recorder:
         with self._clock("output"):
             observation = self._simulation.observe(step)
             wanted = self._case.output.fields
-            save = wanted == "all" or (wanted == "stops" and step.is_stop)
+            keep = wanted == "all" or (wanted == "stops" and step.is_stop)
+            before = Saved(step.checkpoint, self._kept_rows + len(self.rows), self._states)
 
             def write() -> None:
                 assert observation is not None
                 assert self._history is not None
                 self.rows.append(observation.row)
                 self._history.write(observation.row)
-                if self._fields is not None and save:
+                if self._fields is not None and keep:
                     self._fields.write(step.load, observation.fields)
+                    self._states += 1
                 self._progress.accepted(observation.row, self._clock.total)
 
             at_root(self._comm, write)
+            # Last: if the run dies before this, it is taken up one state earlier.
+            checkpoint.save(self._directory, self._comm, self._case, before)
 
     def rejected(self, load: float, step: float, reason: str) -> None:
         """Show a step that was cut back."""
@@ -93,14 +103,19 @@ class Recorder:
 
     def _open(self, grid: FieldGrid | None) -> None:
         self._directory.mkdir(parents=True, exist_ok=True)
-        for stale in ("summary.json", "fields.xdmf", "fields.h5"):
-            (self._directory / stale).unlink(missing_ok=True)
+        stale = ["summary.json"]
+        if not self._kept_states:
+            stale += ["fields.xdmf", "fields.h5"]
+        if not self._kept_rows:
+            stale += [checkpoint.NAME]
+        for name in stale:
+            (self._directory / name).unlink(missing_ok=True)
         replace_text(self._directory / "case.resolved.toml", case_to_toml(self._case))
         self._history = HistoryWriter(
-            self._directory / "history.csv", len(self._case.output.probes)
+            self._directory / "history.csv", len(self._case.output.probes), self._kept_rows
         )
         if self._case.output.fields != "none" and grid is not None:
-            self._fields = FieldsWriter(self._directory, grid)
+            self._fields = FieldsWriter(self._directory, grid, self._kept_states)
 
     def _finish(self, status: str, message: str) -> None:
         with self._clock("output"):

@@ -6,11 +6,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from . import checkpoint
 from .errors import PathError
 from .recorder import Recorder
 from .results.history import HistoryRow
 from .simulation import build_simulation
-from .solve.continuation import follow
+from .solve.continuation import follow, start_at
 from .solve.step_size import StepSettings
 from .stopwatch import Stopwatch
 
@@ -29,7 +30,7 @@ class RunResult:
     directory
         Where the results are.
     rows
-        A row per accepted step; empty on ranks other than 0.
+        A row per accepted step of this run; empty on ranks other than 0.
     """
 
     directory: Path
@@ -40,6 +41,7 @@ def run(
     case: Case,
     directory: Path | None = None,
     *,
+    resume: bool = False,
     quiet: bool = False,
     comm: MPI.Comm | None = None,
 ) -> RunResult:
@@ -51,6 +53,8 @@ def run(
         What to simulate.
     directory
         Where results go; ``results/<name>`` by default. Earlier results there are replaced.
+    resume
+        Go on from the last state of an interrupted run in that directory, if there is one.
     quiet
         Show no progress.
     comm
@@ -59,7 +63,8 @@ def run(
     Raises
     ------
     CaseError
-        If the mesh or a probe is wrong, which shows only here.
+        If the mesh or a probe is wrong, which shows only here, or if what is to be resumed
+        belongs to another case.
     PathError
         If the path could not be followed to the end. The results up to there are complete.
     """
@@ -69,11 +74,12 @@ def run(
         comm = MPI.COMM_WORLD
     clock = Stopwatch()
     directory = directory or Path("results") / case.name
+    saved = checkpoint.load(directory, comm, case) if resume else None
     simulation = build_simulation(case, comm, clock)
-    recorder = Recorder(case, simulation, directory, clock, comm, quiet)
+    recorder = Recorder(case, simulation, directory, clock, comm, quiet, saved)
     steps = follow(
         simulation.path,
-        simulation.start,
+        saved.checkpoint if saved else start_at(simulation.start),
         _step_settings(case),
         case.continuation.predictor,
         recorder.rejected,

@@ -58,14 +58,14 @@ def coarse_path(coarse_case):
     from mpi4py import MPI
 
     from pantograph_fem.sheet.simulation import SheetSimulation
-    from pantograph_fem.solve.continuation import follow
+    from pantograph_fem.solve.continuation import follow, start_at
     from pantograph_fem.solve.step_size import StepSettings
     from pantograph_fem.stopwatch import Stopwatch
 
     def path(stops=(1.0,), max_step=0.25, **changes):
         simulation = SheetSimulation(coarse_case(**changes), MPI.COMM_SELF, Stopwatch())
         settings = StepSettings(stops=stops, max_step=max_step)
-        return simulation, list(follow(simulation.path, simulation.start, settings))
+        return simulation, list(follow(simulation.path, start_at(simulation.start), settings))
 
     return path
 

@@ -70,8 +70,10 @@ def case_file(tmp_path: Path) -> Path:
             "1.0 is not allowed; it must be greater than 1 (at 1 or less the shear stress does "
             "not vanish with the shear angle, and the undeformed sheet is not in equilibrium)",
         ),
-        ("mesh", "corner_size", 0.02, "0.02 is not allowed; it must be at most mesh.size (0.00618182)"),
-        ("mesh", "grip_size", 0.02, "0.02 is not allowed; it must be at most mesh.size (0.00618182)"),
+        ("mesh", "corner_size", 0.02,
+         "0.02 is not allowed; it must be at most mesh.size (0.00618182)"),
+        ("mesh", "grip_size", 0.02,
+         "0.02 is not allowed; it must be at most mesh.size (0.00618182)"),
         ("discretisation", "scheme", "hinge",
          '"hinge" is not allowed; it must be "micromorphic"'),
         ("discretisation", "degree", 4, "4 is not allowed; it must be 2 or 3"),

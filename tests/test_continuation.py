@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pantograph_fem.errors import PathError
-from pantograph_fem.solve.continuation import Correction, Linearisation, follow
+from pantograph_fem.solve.continuation import Correction, Linearisation, follow, start_at
 from pantograph_fem.solve.predictor import PathPoint, predict
 from pantograph_fem.solve.step_size import StepSettings, StepSize
 
@@ -24,13 +24,13 @@ class Spring:
 
     def correct(self, guess, load):
         if load - self.last_load > self.longest_step:
-            return Correction(np.full(1, np.nan), False, 3, "the step is too long")
+            return Correction(load, np.full(1, np.nan), False, 3, "the step is too long")
         x = guess.copy()
         for iteration in range(1, 12):
             x = x - (self.f(x) - load) / self.df(x)
             if abs(self.f(x[0]) - load) < 1e-12:
-                return Correction(x, True, iteration, "converged")
-        return Correction(x, False, 11, "no convergence")
+                return Correction(load, x, True, iteration, "converged")
+        return Correction(load, x, False, 11, "no convergence")
 
     def linearise(self, x, load):
         self.last_load = load
@@ -46,14 +46,16 @@ def hardening(**options):
 @pytest.mark.parametrize("predictor", ["tangent", "secant", "none"])
 def test_every_accepted_state_is_an_equilibrium(predictor):
     problem = hardening()
-    for step in follow(problem, np.zeros(1), StepSettings(), predictor):
+    for step in follow(problem, start_at(np.zeros(1)), StepSettings(), predictor):
         assert problem.f(step.x[0]) == pytest.approx(step.load, abs=1e-11)
     assert step.load == 1.0
 
 
 def test_stops_are_hit_exactly_and_marked():
     stops = (0.1 + 0.2, 0.7, 1.0)  # 0.30000000000000004
-    steps = list(follow(hardening(), np.zeros(1), StepSettings(stops=stops, max_step=0.2)))
+    steps = list(
+        follow(hardening(), start_at(np.zeros(1)), StepSettings(stops=stops, max_step=0.2))
+    )
     assert [step.load for step in steps if step.is_stop] == list(stops)
     assert [step.number for step in steps] == list(range(len(steps)))
 
@@ -64,7 +66,7 @@ def test_a_forced_cut_back_recovers_and_leaves_no_trace():
     steps = list(
         follow(
             problem,
-            np.zeros(1),
+            start_at(np.zeros(1)),
             StepSettings(initial_step=0.25),
             on_rejected=lambda *report: rejected.append(report),
         )
@@ -84,7 +86,7 @@ def test_a_limit_point_ends_the_path_with_what_was_found_before():
     problem.correct = _only_upwards(problem, problem.correct)
     limit = 2 / (3 * np.sqrt(3))
     found = []
-    path = follow(problem, np.zeros(1), StepSettings(min_step=1e-4))
+    path = follow(problem, start_at(np.zeros(1)), StepSettings(min_step=1e-4))
     with pytest.raises(PathError, match=r"beyond load factor 0\.38") as caught:
         collections.deque(map(found.append, path))
     assert limit - 2e-4 < found[-1].load < limit
@@ -95,7 +97,7 @@ def _only_upwards(problem, correct):
     def checked(guess, load):
         result = correct(guess, load)
         jumped = result.converged and abs(result.x[0]) > 0.6
-        return Correction(result.x, False, 1, "left the branch") if jumped else result
+        return Correction(load, result.x, False, 1, "left the branch") if jumped else result
 
     return checked
 
@@ -170,3 +172,34 @@ def test_the_smallest_step_is_tried_before_giving_up():
     assert size.rejected(0.05)
     assert size.value == 0.04
     assert not size.rejected(0.04)
+
+
+def test_a_path_taken_up_again_is_the_same_path():
+    settings = StepSettings(stops=(0.4, 1.0), max_step=0.1)
+    whole = list(follow(hardening(), start_at(np.zeros(1)), settings))
+    for step in whole:
+        rest = list(follow(hardening(), step.checkpoint, settings))
+        assert [s.load for s in rest] == [s.load for s in whole[step.number :]]
+        assert [s.x[0] for s in rest] == [s.x[0] for s in whole[step.number :]]
+        assert [s.number for s in rest] == [s.number for s in whole[step.number :]]
+
+
+def test_a_stable_path_is_left_only_by_a_small_step():
+    """Beyond load 0.5 all states are unstable: that is believed once a step is small enough."""
+    rejected = []
+    problem = Spring(lambda x: x, lambda x: np.where(x < 0.5, 1.0, -1.0))
+    problem.correct = lambda guess, load: Correction(load, np.array([load]), True, 2, "converged")
+    settings = StepSettings(critical_step=1e-2)
+    steps = list(
+        follow(
+            problem,
+            start_at(np.zeros(1)),
+            settings,
+            on_rejected=lambda load, step, reason: rejected.append(reason),
+        )
+    )
+    first = next(i for i, step in enumerate(steps) if not step.linearisation.stable)
+    assert steps[first].load - steps[first - 1].load <= 1e-2
+    assert 0.5 <= steps[first].load < 0.51
+    assert set(rejected) == {"the state found is unstable"}
+    assert steps[-1].load == 1.0

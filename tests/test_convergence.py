@@ -5,8 +5,10 @@ import pytest
 import ufl
 from ufl.algorithms import expand_derivatives
 
-from dolfinx import fem
 from mpi4py import MPI
+
+from dolfinx import fem
+
 from pantograph_fem import dolfinx_api as api
 from pantograph_fem.mesh import rectangle
 from pantograph_fem.physics.energy import sheet_energy

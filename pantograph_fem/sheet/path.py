@@ -29,7 +29,7 @@ class SheetPath:
         """Newton's method from the guess, with the grips put in place."""
         with self._clock("solve"):
             result = self._newton.solve(self._equilibrium.impose(guess, load))
-        return Correction(result.x, result.converged, result.iterations, result.reason)
+        return Correction(load, result.x, result.converged, result.iterations, result.reason)
 
     def linearise(self, x: Array, load: float) -> Linearisation:
         """Factorise the tangent at an accepted state: its inertia, and the path's direction."""

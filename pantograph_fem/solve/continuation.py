@@ -23,6 +23,7 @@ Array = NDArray[np.float64]
 class Correction:
     """Outcome of a corrector: the state where it converged, why not where it did not."""
 
+    load: float
     x: Array
     converged: bool
     iterations: int
@@ -58,9 +59,34 @@ class Equilibrium(Protocol):
         """Derivative of the path and inertia at an equilibrium."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
+class Checkpoint:
+    """All that the rest of a path depends on.
+
+    Attributes
+    ----------
+    points
+        The last one or two accepted states, the last one last.
+    number, iterations
+        Number of the last accepted step, and the iterations it took.
+    step_size
+        Size of the next step; None for the initial one of the settings.
+    """
+
+    points: tuple[PathPoint, ...]
+    number: int = 0
+    iterations: int = 0
+    step_size: float | None = None
+
+
+def start_at(x: Array) -> Checkpoint:
+    """The beginning of a path at a state that is in equilibrium at load 0."""
+    return Checkpoint((PathPoint(0.0, x),))
+
+
+@dataclass(frozen=True, eq=False)
 class Step:
-    """An accepted state; step 0 is the start."""
+    """An accepted state; step 0 is the start. From `checkpoint` the path can be taken up again."""
 
     number: int
     load: float
@@ -68,6 +94,7 @@ class Step:
     iterations: int
     linearisation: Linearisation
     is_stop: bool
+    checkpoint: Checkpoint
 
 
 Rejected = Callable[[float, float, str], None]
@@ -75,12 +102,12 @@ Rejected = Callable[[float, float, str], None]
 
 def follow(
     problem: Equilibrium,
-    start: Array,
+    start: Checkpoint,
     settings: StepSettings,
     predictor: PredictorName = "tangent",
     on_rejected: Rejected | None = None,
 ) -> Iterator[Step]:
-    """Yield the states of a path as they are accepted, the start (load 0) first.
+    """Yield the states of a path as they are accepted, the last one of `start` first.
 
     A step that fails leaves no trace: the next try sets out from the last accepted state.
     `on_rejected` is told the load, the step and the reason.
@@ -94,37 +121,55 @@ def follow(
     PathError
         Where the smallest step fails too.
     """
-    size = StepSize(settings)
-    stops = set(settings.stops)
-    at_start = problem.linearise(start, 0.0)
-    yield Step(0, 0.0, start, 0, at_start, is_stop=False)
-    points = [PathPoint(0.0, start, at_start.rate)]
-    number = 0
-    stable = at_start.stable
-    while not size.finished(points[-1].load):
-        last = points[-1].load
+    size = StepSize(settings, start.step_size)
+    *earlier, here = start.points
+    number, iterations = start.number, start.iterations
+    linearisation = problem.linearise(here.x, here.load)
+    while True:
+        here = PathPoint(here.load, here.x, linearisation.rate)
+        points = (*earlier[-1:], here)
+        yield Step(
+            number,
+            here.load,
+            here.x,
+            iterations,
+            linearisation,
+            here.load in settings.stops,
+            Checkpoint(points, number, iterations, size.value),
+        )
+        if size.finished(here.load):
+            return
+        correction, linearisation = _advance(
+            problem, points, size, predictor, linearisation.stable, on_rejected
+        )
+        earlier, here = [here], PathPoint(correction.load, correction.x)
+        number, iterations = number + 1, correction.iterations
+        size.accepted(iterations)
+
+
+def _advance(
+    problem: Equilibrium,
+    points: tuple[PathPoint, ...],
+    size: StepSize,
+    predictor: PredictorName,
+    stable: bool,
+    on_rejected: Rejected | None,
+) -> tuple[Correction, Linearisation]:
+    """The next state that is accepted, after as many cut-backs as it takes."""
+    last = points[-1].load
+    while True:
         load = size.next_load(last)
         correction = problem.correct(predict(predictor, points, load), load)
-        if not correction.converged:
-            if on_rejected is not None:
-                on_rejected(load, load - last, correction.reason)
-            if not size.rejected(load - last):
-                raise PathError(_give_up(last, load, correction.reason))
-            continue
-        linearisation = problem.linearise(correction.x, load)
-        if (
-            stable
-            and not linearisation.stable
-            and size.rejected(load - last, settings.critical_step)
-        ):
-            if on_rejected is not None:
-                on_rejected(load, load - last, "the state found is unstable")
-            continue
-        size.accepted(correction.iterations)
-        stable = linearisation.stable
-        number += 1
-        points = [points[-1], PathPoint(load, correction.x, linearisation.rate)]
-        yield Step(number, load, correction.x, correction.iterations, linearisation, load in stops)
+        if correction.converged:
+            linearisation = problem.linearise(correction.x, load)
+            lost = stable and not linearisation.stable
+            if not (lost and size.rejected(load - last, size.settings.critical_step)):
+                return correction, linearisation
+        elif not size.rejected(load - last):
+            raise PathError(_give_up(last, load, correction.reason))
+        if on_rejected is not None:
+            reason = "the state found is unstable" if correction.converged else correction.reason
+            on_rejected(load, load - last, reason)
 
 
 def _give_up(last: float, load: float, reason: str) -> str:

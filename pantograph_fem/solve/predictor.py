@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -21,7 +22,7 @@ class PathPoint:
     rate: Array | None = None
 
 
-def predict(name: PredictorName, points: list[PathPoint], load: float) -> Array:
+def predict(name: PredictorName, points: Sequence[PathPoint], load: float) -> Array:
     """Guess of the state at `load`, shape of the states; `points` are accepted states, last last.
 
     - "none": the last state.

@@ -40,9 +40,9 @@ class StepSettings:
 class StepSize:
     """The current step size of a path."""
 
-    def __init__(self, settings: StepSettings) -> None:
+    def __init__(self, settings: StepSettings, value: float | None = None) -> None:
         self.settings = settings
-        self.value = settings.initial_step
+        self.value = settings.initial_step if value is None else value
 
     def next_load(self, load: float) -> float:
         """Where to go from `load`: equal steps, none above the step size, up to the next stop."""

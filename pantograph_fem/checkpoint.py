@@ -1,0 +1,113 @@
+"""The file ``checkpoint.npz``: what an interrupted run goes on from."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .errors import CaseError
+from .parallel import at_root
+from .solve.continuation import Checkpoint
+from .solve.predictor import PathPoint
+
+if TYPE_CHECKING:
+    from mpi4py import MPI
+
+    from .case import Case
+
+NAME = "checkpoint.npz"
+#: Sections of a case that may differ between the parts of a run: they change no equilibrium.
+_FREE = {"title", "continuation", "output"}
+
+
+@dataclass(frozen=True)
+class Saved:
+    """A checkpoint, and how many rows and states the results held before its state was added."""
+
+    checkpoint: Checkpoint
+    rows: int
+    states: int
+
+
+def fingerprint(case: Case) -> str:
+    """Hash of what determines the equilibria of a case."""
+    physics = case.model_dump(mode="json", exclude=_FREE)
+    return hashlib.sha256(json.dumps(physics, sort_keys=True).encode()).hexdigest()
+
+
+def save(directory: Path, comm: MPI.Comm, case: Case, saved: Saved) -> None:
+    """Replace the checkpoint of a run in one step; a collective call."""
+    checkpoint = saved.checkpoint
+    parts = comm.gather([(point.load, point.x, point.rate) for point in checkpoint.points], root=0)
+
+    def write() -> None:
+        arrays: dict[str, Any] = {
+            "fingerprint": fingerprint(case),
+            "ranks": comm.size,
+            "counts": [checkpoint.number, checkpoint.iterations, saved.rows, saved.states],
+            "step_size": checkpoint.step_size,
+        }
+        for rank, points in enumerate(parts or []):
+            for i, (load, x, rate) in enumerate(points):
+                arrays[f"{rank}_{i}"] = np.stack([x, rate])
+                arrays[f"load_{i}"] = load
+        aside = directory / (NAME + ".part")
+        with aside.open("wb") as file:
+            np.savez(file, **arrays)
+            file.flush()
+            os.fsync(file.fileno())
+        os.replace(aside, directory / NAME)
+
+    at_root(comm, write)
+
+
+def load(directory: Path, comm: MPI.Comm, case: Case) -> Saved | None:
+    """The checkpoint of an earlier run, None if there is none; a collective call.
+
+    Raises
+    ------
+    CaseError
+        If it belongs to another case, or to another number of processes.
+    """
+    path = directory / NAME
+
+    def read() -> list[Saved | None]:
+        if not path.is_file():
+            return [None] * comm.size
+        with np.load(path) as file:
+            if str(file["fingerprint"]) != fingerprint(case):
+                raise CaseError(
+                    f"{path} belongs to another case: only the sections {', '.join(sorted(_FREE))} "
+                    "may differ from those of the interrupted run; start anew without --resume"
+                )
+            if int(file["ranks"]) != comm.size:
+                raise CaseError(
+                    f"{path} was written by {int(file['ranks'])} processes and cannot be taken up "
+                    f"by {comm.size}; use the same number, or start anew without --resume"
+                )
+            number, iterations, rows, states = (int(n) for n in file["counts"])
+            count = sum(name.startswith("load_") for name in file.files)
+            return [
+                Saved(
+                    Checkpoint(
+                        tuple(
+                            PathPoint(float(file[f"load_{i}"]), *file[f"{rank}_{i}"])
+                            for i in range(count)
+                        ),
+                        number,
+                        iterations,
+                        float(file["step_size"]),
+                    ),
+                    rows,
+                    states,
+                )
+                for rank in range(comm.size)
+            ]
+
+    return comm.scatter(at_root(comm, read) or [], root=0)
