@@ -65,6 +65,10 @@ def run(
     # The fronts of the factorisation are small: threads cost more than they bring.
     for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
         os.environ.setdefault(threads, "1")
+    import petsc4py
+
+    # A closed pipe or an interrupt is no crash: no PETSc report of a segmentation fault.
+    petsc4py.init(["pantograph", "-no_signal_handler"])
     from .run import run as run_case  # dolfinx is imported only for a case that is right
 
     result = run_case(case, output, resume=resume, quiet=quiet)

@@ -1,7 +1,7 @@
-"""The only module that knows which dolfinx is installed.
+"""The only module that knows which dolfinx is installed: 0.5 (Debian 12), or 0.9 (Debian 13) and on.
 
-Everything else calls the functions here, which carry the names of newer releases. Written for
-0.5 (Debian 12); what 0.9 (Debian 13) and later need differently is to be added here alone.
+Everything else calls the functions here, which carry the names of newer releases. What only 0.5
+needs stands in branches on ``_OLD``; without them the module is that of the newer releases.
 """
 
 from __future__ import annotations
@@ -9,8 +9,9 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Sequence
 from functools import wraps
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
+import basix.ufl
 import numpy as np
 import ufl
 from numpy.typing import NDArray
@@ -20,14 +21,22 @@ from petsc4py import PETSc
 
 import dolfinx
 import dolfinx.fem.petsc
-from dolfinx import fem, geometry, io, la, mesh
+from dolfinx import fem, geometry, graph, io, la, mesh
+
+_OLD = tuple(int(part) for part in dolfinx.__version__.split(".")[:2]) < (0, 6)
 
 #: The kernels are long straight-line code: the compiler's vectoriser takes a third off their time.
 #: No -ffast-math, which would hide a NaN from the line search.
 _COMPILER_FLAGS = ["-O3", "-g0", "-march=native", "-fno-math-errno"]
 #: Seconds that one process waits for another that compiles the same form.
 _COMPILER_TIMEOUT = 600
-_JIT = {"cffi_extra_compile_args": _COMPILER_FLAGS, "timeout": _COMPILER_TIMEOUT}
+_OPTIONS = {"cffi_extra_compile_args": _COMPILER_FLAGS, "timeout": _COMPILER_TIMEOUT}
+_JIT = {"jit_params" if _OLD else "jit_options": _OPTIONS}
+
+if TYPE_CHECKING or not _OLD:
+    Form, MeshTags, Vector = fem.Form, mesh.MeshTags, la.Vector
+else:
+    Form, MeshTags, Vector = fem.FormMetaClass, mesh.MeshTagsMetaClass, la.VectorMetaClass
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -59,7 +68,7 @@ def versions() -> dict[str, str]:
 
 def atan2(y: Any, x: Any) -> Any:
     """Angle of the point (x, y), in (-π, π]."""
-    return ufl.atan_2(y, x)
+    return ufl.atan_2(y, x) if _OLD else ufl.atan2(y, x)
 
 
 @_compiles
@@ -69,13 +78,17 @@ def create_triangle_mesh(
     """Distribute a mesh of straight triangles; only rank 0's arrays count."""
     if comm.rank != 0:
         points, triangles = np.empty((0, 2)), np.empty((0, 3), dtype=np.int64)
-    domain = ufl.Mesh(ufl.VectorElement("Lagrange", ufl.triangle, 1, dim=2))
-    return mesh.create_mesh(comm, np.ascontiguousarray(triangles, dtype=np.int64), points, domain)
+    cells = np.ascontiguousarray(triangles, dtype=np.int64)
+    domain = ufl.Mesh(lagrange(1, (2,)))
+    if _OLD:
+        return mesh.create_mesh(comm, cells, points, domain)
+    # By name: the order of the two changed in 0.10.
+    return mesh.create_mesh(comm, cells, x=points, e=domain)
 
 
 def tagged_facets(
     domain: mesh.Mesh, edges: NDArray[np.int64], tags: NDArray[np.int32]
-) -> mesh.MeshTagsMetaClass:
+) -> MeshTags:
     """Facet tags from edges given by input vertex numbers; only rank 0's arrays count."""
     if domain.comm.rank != 0:
         edges, tags = np.empty((0, 2), dtype=np.int64), np.empty(0, dtype=np.int32)
@@ -83,14 +96,16 @@ def tagged_facets(
     domain.topology.create_connectivity(1, 0)
     domain.topology.create_connectivity(1, 2)
     entities, values = io.distribute_entity_data(
-        domain._mesh, 1, np.ascontiguousarray(edges, dtype=np.int64), tags
+        domain._mesh if _OLD else domain, 1, np.ascontiguousarray(edges, dtype=np.int64), tags
     )
-    adjacency = dolfinx.cpp.graph.AdjacencyList_int32(entities)
+    adjacency = graph.adjacencylist(entities)
     return mesh.meshtags_from_entities(domain, 1, adjacency, values.astype(np.int32))
 
 
 def lagrange(degree: int, shape: tuple[int, ...] = ()) -> Any:
     """Continuous Lagrange element on triangles: scalar (), vector (n,) or tensor (n, m)."""
+    if not _OLD:
+        return basix.ufl.element("Lagrange", "triangle", degree, shape=shape)
     if not shape:
         return ufl.FiniteElement("Lagrange", ufl.triangle, degree)
     if len(shape) == 1:
@@ -100,13 +115,13 @@ def lagrange(degree: int, shape: tuple[int, ...] = ()) -> Any:
 
 def mixed(elements: Sequence[Any]) -> Any:
     """Several elements side by side."""
-    return ufl.MixedElement(*elements)
+    return ufl.MixedElement(*elements) if _OLD else basix.ufl.mixed_element(list(elements))
 
 
 @_compiles
 def functionspace(domain: mesh.Mesh, element: Any) -> fem.FunctionSpace:
     """Finite element space of `element` on `domain`."""
-    return fem.FunctionSpace(domain, element)
+    return fem.FunctionSpace(domain, element) if _OLD else fem.functionspace(domain, element)
 
 
 def local_size(space: fem.FunctionSpace) -> int:
@@ -122,81 +137,91 @@ def owned_size(space: fem.FunctionSpace) -> int:
 
 def cell_dofs(space: fem.FunctionSpace) -> NDArray[np.int32]:
     """Block numbers of each local cell, shape (cells, dofs per cell)."""
-    cells = space.mesh.topology.index_map(2)
-    count = cells.size_local + cells.num_ghosts
-    return np.asarray(space.dofmap.list.array).reshape(count, -1)
+    return _rows(space.dofmap.list)
 
 
 def cell_vertices(domain: mesh.Mesh) -> NDArray[np.int32]:
     """Geometry nodes of each local cell, shape (cells, 3)."""
-    return np.asarray(domain.geometry.dofmap.array).reshape(-1, 3)
+    return _rows(domain.geometry.dofmap)
+
+
+def _rows(cell_nodes: Any) -> NDArray[np.int32]:
+    if _OLD:  # an adjacency list, each cell having as many nodes
+        return cell_nodes.array.reshape(cell_nodes.num_nodes, -1)
+    return cell_nodes
 
 
 def interpolation_points(space: fem.FunctionSpace) -> NDArray[np.float64]:
     """Reference coordinates of the nodes of a Lagrange cell, shape (nodes, 2)."""
-    return space.element.interpolation_points()
+    points = space.element.interpolation_points
+    return points() if callable(points) else points  # a property from 0.10 on
 
 
 @_compiles
-def form(expression: ufl.Form) -> fem.FormMetaClass:
+def form(expression: ufl.Form) -> Form:
     """Compile a form, or take it from the cache."""
-    return fem.form(expression, jit_params=_JIT)
+    return fem.form(expression, **_JIT)
 
 
 @_compiles
 def expression(value: Any, points: NDArray[np.float64]) -> fem.Expression:
     """Compile the evaluation of a UFL expression at reference points of a cell."""
-    return fem.Expression(value, points, jit_params=_JIT)
+    return fem.Expression(value, points, **_JIT)
 
 
 def evaluate(
     compiled: fem.Expression, domain: mesh.Mesh, cells: NDArray[np.int32]
 ) -> NDArray[np.float64]:
     """Values of an expression in cells, shape (cells, points * components)."""
-    return compiled.eval(cells)
+    values = compiled.eval(cells) if _OLD else compiled.eval(domain, cells)
+    return values.reshape(len(cells), -1)
 
 
-def create_matrix(a: fem.FormMetaClass) -> PETSc.Mat:
+def create_matrix(a: Form) -> PETSc.Mat:
     """Matrix with the sparsity of a bilinear form."""
     return fem.petsc.create_matrix(a)
 
 
-def assemble_matrix(A: PETSc.Mat, a: fem.FormMetaClass, bcs: Sequence[Any]) -> None:
+def assemble_matrix(A: PETSc.Mat, a: Form, bcs: Sequence[Any]) -> None:
     """Assemble into an existing matrix; constrained rows and columns become the identity's."""
     A.zeroEntries()
-    fem.petsc._assemble_matrix_mat(A, a, bcs)
+    fem.petsc.assemble_matrix(A, a, list(bcs))
     A.assemble()
 
 
-def assemble_vector(b: la.VectorMetaClass, L: fem.FormMetaClass) -> None:
+def assemble_vector(b: Vector, L: Form) -> None:
     """Assemble a linear form into a vector with ghosts; the owned part is complete."""
     b.array[:] = 0.0
     fem.assemble_vector(b.array, L)
-    b.scatter_reverse(la.ScatterMode.add)
+    scatter_reverse_add(b)
 
 
-def lift(b: la.VectorMetaClass, a: fem.FormMetaClass, bcs: Sequence[Any]) -> None:
+def lift(b: Vector, a: Form, bcs: Sequence[Any]) -> None:
     """Subtract from b the columns of constrained dofs times their prescribed values."""
     fem.apply_lifting(b.array, [a], [list(bcs)])
-    b.scatter_reverse(la.ScatterMode.add)
+    scatter_reverse_add(b)
 
 
-def create_vector(space: fem.FunctionSpace) -> la.VectorMetaClass:
+def create_vector(space: fem.FunctionSpace) -> Vector:
     """Zero vector with ghosts over the dofs of a space."""
     return la.vector(space.dofmap.index_map, space.dofmap.index_map_bs)
 
 
-def scatter_reverse_add(vector: la.VectorMetaClass) -> None:
+def scatter_reverse_add(vector: Vector) -> None:
     """Add ghost contributions to their owners."""
-    vector.scatter_reverse(la.ScatterMode.add)
+    vector.scatter_reverse(la.ScatterMode.add if _OLD else la.InsertMode.add)
 
 
 def containing_cells(domain: mesh.Mesh, points: NDArray[np.float64]) -> NDArray[np.int32]:
     """A local cell that holds each point of shape (n, 2), or -1."""
     padded = np.zeros((len(points), 3))
     padded[:, :2] = points
-    tree = geometry.BoundingBoxTree(domain, domain.topology.dim)
-    candidates = geometry.compute_collisions(tree, padded)
+    if _OLD:
+        tree = geometry.BoundingBoxTree(domain, domain.topology.dim)
+        candidates = geometry.compute_collisions(tree, padded)
+    else:
+        tree = geometry.bb_tree(domain, domain.topology.dim)
+        candidates = geometry.compute_collisions_points(tree, padded)
     colliding = geometry.compute_colliding_cells(domain, candidates, padded)
     owned = domain.topology.index_map(domain.topology.dim).size_local
     found = np.full(len(points), -1, dtype=np.int32)

@@ -156,6 +156,31 @@ def test_linear_pivots_answer_in_proportion_at_small_loads(solve):
     assert one.last.energy == pytest.approx(0.5 * one.last.force[1] * 1e-7, rel=1e-4)
 
 
+def test_upright_fibres_lose_stability_at_their_buckling_load(solve):
+    r"""Fibres along x and y, compressed along y by the force N per width.
+
+    The sway u_x(y) with hinged ends bends the upright fibres and turns them against the others,
+    so N λ = K_b k² + K_p with N = K_e (1 - λ), k = π/H: Euler's load of extensible fibres with the
+    pivots (γ = 2) as a rotational foundation.
+    """
+    K_e, K_b, K_p = 1.34e5, 10.0, 1.59e2
+    resistance = K_b * (np.pi / H) ** 2 + K_p
+    critical = H * (1 - np.sqrt(1 - 4 * resistance / K_e)) / 2  # (1 - λ) H
+    sheet = solve(
+        sheet={"fibre_angle": 0.0},
+        material={"bending": K_b, "shear_exponent": None},
+        discretisation={"degree": 3},
+        grips={"top": {"translation": [0.0, -1.03 * critical]}},
+        continuation={"stops": [0.97 / 1.03, 1.0]},
+    )
+    unstable_from = next(row.load * 1.03 for row in sheet.rows if not row.stable)
+    stable_to = max(row.load * 1.03 for row in sheet.rows if row.stable)
+    assert 0.97 <= stable_to < unstable_from <= 1.03
+    first = next(row for row in sheet.rows if not row.stable)
+    assert first.negative_pivots == first.expected_negative_pivots + 1
+    assert sheet.last.force[1] == pytest.approx(-W * K_e * 1.03 * critical / H, rel=1e-6)
+
+
 @pytest.mark.slow
 def test_a_sheet_with_a_hole_is_softer_than_one_without(solve):
     file = Path(__file__).parents[1] / "meshes" / "specimen_with_hole.msh"

@@ -48,7 +48,8 @@ class FieldSampler:
         numbers = index_map.local_to_global(self._dofs.ravel().astype(np.int32))
         cells = np.asarray(numbers).reshape(self._dofs.shape)
         triangles = self._comm.gather(cells[:, _QUARTERS].reshape(-1, 3), root=0)
-        points = self._gather(self._nodes.tabulate_dof_coordinates()[:, :2])
+        owned = self._nodes.dofmap.index_map.size_local
+        points = self._gather(self._nodes.tabulate_dof_coordinates()[:owned, :2])
         if triangles is None or points is None:
             return None
         merged = np.concatenate(triangles)
@@ -66,18 +67,17 @@ class FieldSampler:
         return fields
 
     def _accumulate(self, values: Array) -> Array:
-        """Area-weighted sums at all local nodes of values of shape (cells, nodes, components)."""
+        """Area-weighted sums at the owned nodes of values of shape (cells, nodes, components)."""
         components = values.shape[2]
         sums = self._sum.array.reshape(-1, components)
         sums[:] = 0.0
         np.add.at(sums, self._dofs, values * self._areas[:, None, None])
         api.scatter_reverse_add(self._sum)
-        return sums.copy()
+        return sums[: self._nodes.dofmap.index_map.size_local].copy()
 
-    def _gather(self, local: Array) -> Array | None:
+    def _gather(self, owned: Array) -> Array | None:
         """Rows of the owned nodes of every process, in global order, on rank 0."""
-        owned = self._nodes.dofmap.index_map.size_local
-        parts = self._comm.gather(local[:owned], root=0)
+        parts = self._comm.gather(owned, root=0)
         return None if parts is None else np.concatenate(parts)
 
     def _cell_areas(self) -> Array:
