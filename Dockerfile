@@ -1,8 +1,9 @@
 # The command `pantograph` with everything it needs, from Debian's packages alone.
 #
 #   docker build -t pantograph_fem .
-#   docker run --rm -v "$PWD/cases:/cases:ro" -v "$PWD/results:/results" pantograph_fem \
-#       run /cases/a_bias_extension.toml
+#   mkdir -p results
+#   docker run --rm --user "$(id -u)" -v "$PWD/cases:/cases:ro" -v "$PWD/results:/results" \
+#       pantograph_fem run /cases/a_bias_extension.toml
 FROM debian:trixie-slim
 
 COPY apt-packages.txt /tmp/
@@ -12,6 +13,7 @@ RUN apt-get update \
     | xargs apt-get install -y --no-install-recommends \
         python3-matplotlib python3-meshio python3-pydantic python3-rich \
         python3-setuptools python3-tomli-w python3-typer \
+ && apt-get clean \
  && rm -rf /var/lib/apt/lists/* /tmp/apt-packages.txt
 
 COPY pyproject.toml README.md /opt/pantograph_fem/

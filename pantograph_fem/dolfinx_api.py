@@ -1,7 +1,7 @@
-"""The only module that knows which dolfinx is installed: 0.5 (Debian 12), or 0.9 (Debian 13) and on.
+"""The only module that knows which dolfinx is installed.
 
-Everything else calls the functions here, which carry the names of newer releases. What only 0.5
-needs stands in branches on ``_OLD``; without them the module is that of the newer releases.
+Everything else calls the functions here, which carry the names of newer releases. The branches on
+``_OLD`` are for 0.5 (Debian 12); without them this is the module for 0.9 (Debian 13) and later.
 """
 
 from __future__ import annotations
@@ -11,7 +11,6 @@ from collections.abc import Callable, Sequence
 from functools import wraps
 from typing import TYPE_CHECKING, Any, TypeVar
 
-import basix.ufl
 import numpy as np
 import ufl
 from numpy.typing import NDArray
@@ -24,6 +23,12 @@ import dolfinx.fem.petsc
 from dolfinx import fem, geometry, graph, io, la, mesh
 
 _OLD = tuple(int(part) for part in dolfinx.__version__.split(".")[:2]) < (0, 6)
+if not _OLD:
+    import basix.ufl
+if TYPE_CHECKING:
+    from dolfinx.fem import Form
+    from dolfinx.la import Vector
+    from dolfinx.mesh import MeshTags
 
 #: The kernels are long straight-line code: the compiler's vectoriser takes a third off their time.
 #: No -ffast-math, which would hide a NaN from the line search.
@@ -32,11 +37,6 @@ _COMPILER_FLAGS = ["-O3", "-g0", "-march=native", "-fno-math-errno"]
 _COMPILER_TIMEOUT = 600
 _OPTIONS = {"cffi_extra_compile_args": _COMPILER_FLAGS, "timeout": _COMPILER_TIMEOUT}
 _JIT = {"jit_params" if _OLD else "jit_options": _OPTIONS}
-
-if TYPE_CHECKING or not _OLD:
-    Form, MeshTags, Vector = fem.Form, mesh.MeshTags, la.Vector
-else:
-    Form, MeshTags, Vector = fem.FormMetaClass, mesh.MeshTagsMetaClass, la.VectorMetaClass
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -86,9 +86,7 @@ def create_triangle_mesh(
     return mesh.create_mesh(comm, cells, x=points, e=domain)
 
 
-def tagged_facets(
-    domain: mesh.Mesh, edges: NDArray[np.int64], tags: NDArray[np.int32]
-) -> MeshTags:
+def tagged_facets(domain: mesh.Mesh, edges: NDArray[np.int64], tags: NDArray[np.int32]) -> MeshTags:
     """Facet tags from edges given by input vertex numbers; only rank 0's arrays count."""
     if domain.comm.rank != 0:
         edges, tags = np.empty((0, 2), dtype=np.int64), np.empty(0, dtype=np.int32)
@@ -98,7 +96,7 @@ def tagged_facets(
     entities, values = io.distribute_entity_data(
         domain._mesh if _OLD else domain, 1, np.ascontiguousarray(edges, dtype=np.int64), tags
     )
-    adjacency = graph.adjacencylist(entities)
+    adjacency = (graph.create_adjacencylist if _OLD else graph.adjacencylist)(entities)
     return mesh.meshtags_from_entities(domain, 1, adjacency, values.astype(np.int32))
 
 
@@ -173,8 +171,7 @@ def evaluate(
     compiled: fem.Expression, domain: mesh.Mesh, cells: NDArray[np.int32]
 ) -> NDArray[np.float64]:
     """Values of an expression in cells, shape (cells, points * components)."""
-    values = compiled.eval(cells) if _OLD else compiled.eval(domain, cells)
-    return values.reshape(len(cells), -1)
+    return compiled.eval(cells) if _OLD else compiled.eval(domain, cells)
 
 
 def create_matrix(a: Form) -> PETSc.Mat:

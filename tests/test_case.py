@@ -43,7 +43,7 @@ def test_defaults() -> None:
         "pivot": "centre",
     }
     assert case.continuation.stops == (1.0,)
-    assert case.continuation.initial_step == 0.05
+    assert case.continuation.initial_step == 0.02
     assert case.output.probes == ()
 
 

@@ -245,7 +245,6 @@ def test_a_path_that_cannot_be_followed_ends_with_3_and_keeps_its_results(tmp_pa
     assert "beyond load factor 0:" in message  # the load
     assert "no convergence within max_iterations" in message  # the cause
     assert "continuation.max_iterations" in message  # the setting
-    assert done.stdout.splitlines()[-1].startswith("cut back: load 1.0000")
     results = tmp_path / "results" / "coarse"
     assert read_history(results / "history.csv")["load"].tolist() == [0.0]
     assert json.loads((results / "summary.json").read_text())["status"] == f"stopped: {message}"
@@ -261,7 +260,6 @@ def test_an_output_that_cannot_be_a_folder_is_refused(tmp_path, output):
     assert_refused(done, 2, output)
 
 
-@pytest.mark.xfail(strict=True, reason="PETSc catches the signal and aborts with a page of text")
 def test_a_reader_that_goes_away_is_no_crash(tmp_path):
     write_case(tmp_path, continuation={"max_step": 0.05}, output={"fields": "none"})
     with subprocess.Popen(
@@ -328,7 +326,6 @@ def test_two_processes_save_the_fields_of_one(one_and_two):
 
 
 @pytest.mark.slow
-@pytest.mark.xfail(strict=True, reason="0/0 at ghost nodes of the output grid")
 def test_two_processes_warn_of_nothing(one_and_two):
     _, ends = one_and_two
     assert all("Warning" not in done.stderr for done in ends)

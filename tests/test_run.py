@@ -22,11 +22,11 @@ W, H = 0.068, 0.204
 TRANSLATION, ANGLE = np.array([0.01, 0.02]), 25.0
 STOPS = [0.1 + 0.2, 0.5, 1.0]
 PROBES = [[0.034, 0.102], [0.0, 0.0], [0.034, 0.204]]
-#: An easy step to 0.05, and then one that is too long for its iterations and may not be cut back.
+#: An easy step to 0.02, and then one that is too long for its iterations and may not be cut back.
 TOO_HARD = {
     "grips": {"top": {"translation": [0.0, 0.06], "rotation": None}},
     "continuation": {
-        "stops": [0.05, 1.0],
+        "stops": [0.02, 1.0],
         "initial_step": 0.5,
         "min_step": 0.5,
         "max_step": 0.5,
@@ -66,6 +66,7 @@ def names(directory):
 def test_a_run_leaves_the_files_of_the_interface_and_no_others(result):
     assert names(result.directory) == [
         "case.resolved.toml",
+        "checkpoint.npz",
         "fields.h5",
         "fields.xdmf",
         "figures",
@@ -223,7 +224,12 @@ def test_fields_are_saved_at_the_states_asked_for(tmp_path, fields, saved):
     assert len(loads) > 4
     assert "figures" not in names(tmp_path)
     if fields == "none":
-        assert names(tmp_path) == ["case.resolved.toml", "history.csv", "summary.json"]
+        assert names(tmp_path) == [
+            "case.resolved.toml",
+            "checkpoint.npz",
+            "history.csv",
+            "summary.json",
+        ]
     else:
         assert read_fields(tmp_path).loads.tolist() == (loads if saved is None else saved)
 
@@ -233,7 +239,7 @@ def test_a_path_that_ends_early_keeps_what_it_found(tmp_path):
         run(small(**TOO_HARD), tmp_path, quiet=True)
     history = read_history(tmp_path / "history.csv")
     reached = history["load"][-1]
-    assert history["load"].tolist() == [0.0, 0.05]
+    assert history["load"].tolist() == [0.0, 0.02]
     assert f"beyond load factor {reached:.6g}" in str(caught.value)
     assert "max_iterations" in str(caught.value)
 
@@ -307,10 +313,13 @@ def test_a_new_run_in_the_same_directory_replaces_the_old_one(tmp_path):
 @pytest.mark.parametrize(
     ("output", "left"),
     [
-        ({"fields": "none"}, ["case.resolved.toml", "figures", "history.csv", "summary.json"]),
+        (
+            {"fields": "none"},
+            ["case.resolved.toml", "checkpoint.npz", "figures", "history.csv", "summary.json"],
+        ),
         pytest.param(
             {"fields": "none", "figures": False},
-            ["case.resolved.toml", "history.csv", "summary.json"],
+            ["case.resolved.toml", "checkpoint.npz", "history.csv", "summary.json"],
             marks=pytest.mark.xfail(
                 strict=True, reason="figures of the old run stay when the new one draws none"
             ),

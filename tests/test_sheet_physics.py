@@ -52,12 +52,6 @@ def test_an_extensible_sheet_stores_less_than_a_hardly_extensible_one_all_along(
     assert all(soft[load] < stiff[load] for load in common)
 
 
-def test_fibres_shorten_nowhere_much_and_never_vanish(stiffer_and_stiffer):
-    for sheet in stiffer_and_stiffer:
-        for family in ("stretch_1", "stretch_2"):
-            assert (sheet.fields[family] > 0.5).all()
-
-
 def test_a_clamp_is_one_constraint_more(solve):
     """On the same mesh its energy is no lower; how the grips hold does not touch the dofs."""
     mesh = {"grip_size": 0.01}
@@ -156,12 +150,15 @@ def test_linear_pivots_answer_in_proportion_at_small_loads(solve):
     assert one.last.energy == pytest.approx(0.5 * one.last.force[1] * 1e-7, rel=1e-4)
 
 
-def test_upright_fibres_lose_stability_at_their_buckling_load(solve):
+@pytest.mark.parametrize(
+    ("degree", "size", "corner_size"), [(3, 0.02, 0.01), (3, 0.01, 0.0005), (2, 0.01, 0.0005)]
+)
+def test_upright_fibres_lose_stability_at_their_buckling_load(solve, degree, size, corner_size):
     r"""Fibres along x and y, compressed along y by the force N per width.
 
     The sway u_x(y) with hinged ends bends the upright fibres and turns them against the others,
     so N λ = K_b k² + K_p with N = K_e (1 - λ), k = π/H: Euler's load of extensible fibres with the
-    pivots (γ = 2) as a rotational foundation.
+    pivots (γ = 2) as a rotational foundation. Wrinkles of single elements must not come first.
     """
     K_e, K_b, K_p = 1.34e5, 10.0, 1.59e2
     resistance = K_b * (np.pi / H) ** 2 + K_p
@@ -169,7 +166,8 @@ def test_upright_fibres_lose_stability_at_their_buckling_load(solve):
     sheet = solve(
         sheet={"fibre_angle": 0.0},
         material={"bending": K_b, "shear_exponent": None},
-        discretisation={"degree": 3},
+        discretisation={"degree": degree},
+        mesh={"size": size, "corner_size": corner_size},
         grips={"top": {"translation": [0.0, -1.03 * critical]}},
         continuation={"stops": [0.97 / 1.03, 1.0]},
     )

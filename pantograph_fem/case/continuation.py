@@ -26,7 +26,7 @@ def _stops(value: object) -> tuple[float, ...]:
 
 def _default_initial_step(fields: dict[str, Any]) -> float:
     """Follow a smaller `max_step`, which is then the only key to set for smaller steps."""
-    return min(0.05, float(fields.get("max_step", 0.05)))
+    return min(0.02, float(fields.get("max_step", 0.02)))
 
 
 class Continuation(Part):
@@ -37,7 +37,7 @@ class Continuation(Part):
     stops
         Increasing loads at which a state must be saved; the last is 1.
     max_step, min_step, initial_step
-        Largest, smallest and first step; the first is 0.05, or `max_step` if less, by default.
+        Largest, smallest and first step; the first is 0.02, or `max_step` if less, by default.
     growth, cutback
         Largest growth of the step after an accepted one; its shrinkage after a rejected one.
     target_iterations

@@ -29,7 +29,7 @@ def flat(points: NDArray[np.float64]) -> NDArray[np.float64]:
     """
     _refuse(
         "points with a coordinate that is not a finite number",
-        ~np.isfinite(points).all(axis=1),
+        np.any(~np.isfinite(points), axis=1),
         points,
         "every point needs x and y",
     )

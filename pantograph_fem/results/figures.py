@@ -79,5 +79,5 @@ def draw_figures(
 def stop_states(series: FieldSeries, stops: Sequence[float]) -> list[int]:
     """Return the numbers of the states at stops, and of the last one."""
     at_stop = np.isclose(series.loads[:, None], np.asarray(stops, float), rtol=0, atol=1e-9)
-    reached = set(np.flatnonzero(at_stop.any(axis=1)).tolist())
+    reached = {int(index) for index in np.flatnonzero(at_stop.any(axis=1))}
     return sorted(reached | {len(series.loads) - 1})

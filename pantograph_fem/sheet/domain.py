@@ -44,8 +44,10 @@ class Domain:
 def distribute(comm: MPI.Comm, triangulation: Triangulation | None) -> Domain:
     """Make the mesh on all processes from rank 0's triangulation; a collective call."""
     shared = None
-    points, triangles = np.empty((0, 2)), np.empty((0, 3), dtype=np.int64)
-    edges, tags = np.empty((0, 2), dtype=np.int64), np.empty(0, dtype=np.int32)
+    points: NDArray[np.float64] = np.empty((0, 2))
+    triangles: NDArray[np.int64] = np.empty((0, 3), dtype=np.int64)
+    edges: NDArray[np.int64] = np.empty((0, 2), dtype=np.int64)
+    tags: NDArray[np.int32] = np.empty(0, dtype=np.int32)
     if triangulation is not None:
         points, triangles = triangulation.points, triangulation.triangles
         by_grip = [triangulation.edges[name] for name in GRIPS]

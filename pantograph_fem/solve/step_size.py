@@ -28,7 +28,7 @@ class StepSettings:
     """
 
     stops: tuple[float, ...] = (1.0,)
-    initial_step: float = 0.05
+    initial_step: float = 0.02
     min_step: float = 1e-5
     max_step: float = 0.25
     growth: float = 1.5
