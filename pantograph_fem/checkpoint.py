@@ -8,6 +8,7 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -38,7 +39,10 @@ class Saved:
 def fingerprint(case: Case) -> str:
     """Hash of what determines the equilibria of a case."""
     physics = case.model_dump(mode="json", exclude=_FREE)
-    return hashlib.sha256(json.dumps(physics, sort_keys=True).encode()).hexdigest()
+    digest = hashlib.sha256(json.dumps(physics, sort_keys=True).encode())
+    if case.mesh.file is not None:
+        digest.update(case.mesh.file.read_bytes())
+    return digest.hexdigest()
 
 
 def save(directory: Path, comm: MPI.Comm, case: Case, saved: Saved) -> None:
@@ -73,7 +77,7 @@ def load(directory: Path, comm: MPI.Comm, case: Case) -> Saved | None:
     Raises
     ------
     CaseError
-        If it belongs to another case, or to another number of processes.
+        If it is damaged, or belongs to another case or another number of processes.
     """
     path = directory / NAME
 
@@ -110,4 +114,10 @@ def load(directory: Path, comm: MPI.Comm, case: Case) -> Saved | None:
                 for rank in range(comm.size)
             ]
 
-    return comm.scatter(at_root(comm, read) or [], root=0)
+    def read_or_explain() -> list[Saved | None]:
+        try:
+            return read()
+        except (ValueError, KeyError, OSError, EOFError, BadZipFile) as error:
+            raise CaseError(f"{path} is damaged ({error}); start anew without --resume") from error
+
+    return comm.scatter(at_root(comm, read_or_explain) or [], root=0)

@@ -102,8 +102,8 @@ def main() -> None:
         code = app(standalone_mode=False)
     except PantographError as error:
         _fail(str(error), error.exit_code)
-    except typer.Abort:
-        _fail("interrupted", 1)
+    except (typer.Abort, KeyboardInterrupt):
+        _fail("Interrupted. `pantograph run --resume` goes on from the last state.", 1)
     except Exception as error:
         # click's usage errors know how to show themselves
         show = getattr(error, "show", None)
@@ -122,5 +122,5 @@ def _fail(message: str, code: int) -> None:
 
 
 def _rank() -> int:
-    mpi = sys.modules.get("mpi4py.MPI")
-    return mpi.COMM_WORLD.rank if mpi else 0
+    # Known from the environment before MPI is imported; by Open MPI and by MPICH's kin.
+    return int(os.environ.get("OMPI_COMM_WORLD_RANK") or os.environ.get("PMI_RANK") or 0)

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 #: No -ffast-math, which would hide a NaN from the line search.
 _COMPILER_FLAGS = ["-O3", "-g0", "-march=native", "-fno-math-errno"]
 #: Seconds that one process waits for another that compiles the same form.
-_COMPILER_TIMEOUT = 600
+_COMPILER_TIMEOUT = 120
 _OPTIONS = {"cffi_extra_compile_args": _COMPILER_FLAGS, "timeout": _COMPILER_TIMEOUT}
 _JIT = {"jit_params" if _OLD else "jit_options": _OPTIONS}
 

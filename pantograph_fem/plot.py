@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from .case import load_case
+from .errors import CaseError
 from .results.draw import draw_all
 
 
@@ -16,5 +17,10 @@ def plot(directory: Path) -> list[Path]:
     CaseError
         If the directory holds no results of a run.
     """
+    if not (directory / "case.resolved.toml").is_file():
+        raise CaseError(
+            f"{directory} holds no results: case.resolved.toml is missing. "
+            "`pantograph run CASE.toml` writes them."
+        )
     case = load_case(directory / "case.resolved.toml")
     return draw_all(directory, case)

@@ -46,7 +46,12 @@ class Recorder:
         self._directory = directory
         self._clock = clock
         self._comm = comm
-        self._progress = Progress(case.title or case.name, quiet=quiet or comm.rank != 0)
+        self._progress = Progress(
+            case.title or case.name,
+            quiet=quiet or comm.rank != 0,
+            # mpirun gives its processes a terminal even where it has none itself.
+            plain=comm.size > 1,
+        )
         self._history: HistoryWriter | None = None
         self._fields: FieldsWriter | None = None
         self._kept_rows = resumed.rows if resumed else 0
@@ -102,14 +107,7 @@ class Recorder:
         at_root(self._comm, lambda: self._finish(status, message))
 
     def _open(self, grid: FieldGrid | None) -> None:
-        self._directory.mkdir(parents=True, exist_ok=True)
-        stale = ["summary.json"]
-        if not self._kept_states:
-            stale += ["fields.xdmf", "fields.h5"]
-        if not self._kept_rows:
-            stale += [checkpoint.NAME]
-        for name in stale:
-            (self._directory / name).unlink(missing_ok=True)
+        self._remove_stale()
         replace_text(self._directory / "case.resolved.toml", case_to_toml(self._case))
         self._history = HistoryWriter(
             self._directory / "history.csv", len(self._case.output.probes), self._kept_rows
@@ -117,12 +115,30 @@ class Recorder:
         if self._case.output.fields != "none" and grid is not None:
             self._fields = FieldsWriter(self._directory, grid, self._kept_states)
 
-    def _finish(self, status: str, message: str) -> None:
-        with self._clock("output"):
-            if self._case.output.figures:
-                from .plot import plot
+    def _remove_stale(self) -> None:
+        """Remove what an earlier run left and this one does not go on from."""
+        stale = [self._directory / "summary.json", *self._directory.glob("figures/*.png")]
+        if not self._kept_states:
+            stale += [self._directory / "fields.xdmf", self._directory / "fields.h5"]
+        if not self._kept_rows:
+            stale += [self._directory / checkpoint.NAME]
+        for path in stale:
+            path.unlink(missing_ok=True)
+        figures = self._directory / "figures"
+        if figures.is_dir() and not any(figures.iterdir()):
+            figures.rmdir()
 
+    def _finish(self, status: str, message: str) -> None:
+        # Before the figures too: a run is not lost because drawing it failed.
+        self._write_summary(status, message)
+        if self._case.output.figures:
+            from .plot import plot
+
+            with self._clock("output"):
                 plot(self._directory)
+            self._write_summary(status, message)
+
+    def _write_summary(self, status: str, message: str) -> None:
         write_summary(
             self._directory / "summary.json",
             status=status,

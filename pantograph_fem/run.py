@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from . import checkpoint
-from .errors import PathError
+from .errors import CaseError, PathError
+from .parallel import at_root
 from .recorder import Recorder
 from .results.history import HistoryRow
 from .simulation import build_simulation
@@ -63,8 +64,8 @@ def run(
     Raises
     ------
     CaseError
-        If the mesh or a probe is wrong, which shows only here, or if what is to be resumed
-        belongs to another case.
+        If the directory cannot be written to; if the mesh or a probe is wrong, which shows only
+        here; if what is to be resumed belongs to another case.
     PathError
         If the path could not be followed to the end. The results up to there are complete.
     """
@@ -74,6 +75,7 @@ def run(
         comm = MPI.COMM_WORLD
     clock = Stopwatch()
     directory = directory or Path("results") / case.name
+    at_root(comm, lambda: _make_folder(directory))
     saved = checkpoint.load(directory, comm, case) if resume else None
     simulation = build_simulation(case, comm, clock)
     recorder = Recorder(case, simulation, directory, clock, comm, quiet, saved)
@@ -93,6 +95,18 @@ def run(
         raise
     recorder.finish("done")
     return RunResult(directory, tuple(recorder.rows))
+
+
+def _make_folder(directory: Path) -> None:
+    """Fail before anything is computed if results could not be written."""
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+        (directory / "history.csv").touch()
+    except OSError as error:
+        raise CaseError(
+            f"--output: {directory} cannot hold results ({error.strerror}); "
+            "give a folder that can be made or written to"
+        ) from None
 
 
 def _step_settings(case: Case) -> StepSettings:

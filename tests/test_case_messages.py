@@ -86,14 +86,14 @@ def case_file(tmp_path: Path) -> Path:
             "stops",
             [0.5, 0.25],
             "[0.5, 0.25] is not allowed; it must be a list of increasing load fractions, each "
-            "greater than 0 and at most 1",
+            "greater than 0 and at most 1, at least 1e-09 apart",
         ),
         (
             "continuation",
             "stops",
             [0.0, 1.0],
             "[0.0, 1.0] is not allowed; it must be a list of increasing load fractions, each "
-            "greater than 0 and at most 1",
+            "greater than 0 and at most 1, at least 1e-09 apart",
         ),
         (
             "continuation",

@@ -252,7 +252,6 @@ def test_a_path_that_cannot_be_followed_ends_with_3_and_keeps_its_results(tmp_pa
     assert redrawn.returncode == 0, redrawn.stderr
 
 
-@pytest.mark.xfail(strict=True, reason="ends with a traceback, after meshing and compiling")
 @pytest.mark.parametrize("output", ["case.toml", "case.toml/inside"])
 def test_an_output_that_cannot_be_a_folder_is_refused(tmp_path, output):
     write_case(tmp_path)

@@ -317,12 +317,9 @@ def test_a_new_run_in_the_same_directory_replaces_the_old_one(tmp_path):
             {"fields": "none"},
             ["case.resolved.toml", "checkpoint.npz", "figures", "history.csv", "summary.json"],
         ),
-        pytest.param(
+        (
             {"fields": "none", "figures": False},
             ["case.resolved.toml", "checkpoint.npz", "history.csv", "summary.json"],
-            marks=pytest.mark.xfail(
-                strict=True, reason="figures of the old run stay when the new one draws none"
-            ),
         ),
     ],
 )
@@ -334,13 +331,11 @@ def test_a_new_run_leaves_nothing_of_an_old_one(tmp_path, output, left):
         assert names(tmp_path / "figures") == ["force_displacement.png"]
 
 
-@pytest.mark.xfail(strict=True, raises=ValueError, reason="matplotlib reads the title as a formula")
 def test_any_title_can_be_drawn(tmp_path):
     run(small(title="$x_$ {0} %s \\ [bold]", output={"fields": "none"}), tmp_path, quiet=True)
     assert (tmp_path / "summary.json").is_file()
 
 
-@pytest.mark.xfail(strict=True, reason="of stops within 1e-12 only one is found, silently")
 @pytest.mark.parametrize("stops", [[0.5, 0.5 + 1e-13, 1.0], [1 - 1e-13, 1.0]])
 def test_stops_are_found_or_refused_however_close(tmp_path, stops):
     try:

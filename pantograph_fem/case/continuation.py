@@ -10,17 +10,28 @@ from pydantic import BeforeValidator, Field, model_validator
 from .part import Part, finite_numbers
 from .problem import Problem, not_allowed, problem_error
 
+#: Loads closer than this cannot be told apart once steps have been added up.
+_SMALLEST_STEP = 1e-9
+
 
 def _stops(value: object) -> tuple[float, ...]:
     """Check the stops and append the full load."""
     stops = finite_numbers(value)
+    full = _with_full_load(stops or ())
     if (
         stops is None
         or any(not 0 < stop <= 1 for stop in stops)
-        or any(a >= b for a, b in pairwise(stops))
+        or any(a + _SMALLEST_STEP > b for a, b in pairwise(full))
     ):
-        rule = "be a list of increasing load fractions, each greater than 0 and at most 1"
+        rule = (
+            "be a list of increasing load fractions, each greater than 0 and at most 1, "
+            f"at least {_SMALLEST_STEP:g} apart"
+        )
         raise problem_error(Problem(not_allowed(value, rule)))
+    return full
+
+
+def _with_full_load(stops: tuple[float, ...]) -> tuple[float, ...]:
     return stops if stops[-1:] == (1.0,) else (*stops, 1.0)
 
 
@@ -54,14 +65,14 @@ class Continuation(Part):
 
     stops: Annotated[tuple[float, ...], BeforeValidator(_stops)] = (1.0,)
     max_step: float = Field(default=0.25, gt=0, le=1)
-    min_step: float = Field(default=1e-5, gt=0, le=1)
+    min_step: float = Field(default=1e-5, ge=_SMALLEST_STEP, le=1)
     initial_step: float = Field(default_factory=_default_initial_step, gt=0, le=1)
     growth: float = Field(default=1.5, gt=1)
     cutback: float = Field(default=0.5, gt=0, lt=1)
     target_iterations: int = Field(default=4, ge=1)
     critical_step: float = Field(default=1e-3, gt=0, le=1)
     max_iterations: int = Field(default=15, ge=1)
-    tolerance: float = Field(default=1e-8, gt=0, le=1e-3)
+    tolerance: float = Field(default=1e-8, ge=1e-13, le=1e-3)
     predictor: Literal["tangent", "secant", "none"] = "tangent"
 
     @model_validator(mode="after")

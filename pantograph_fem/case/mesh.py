@@ -20,6 +20,8 @@ CORNER_SIZE_OVER_SIZE = 1 / 40
 #: Default size along the grips when one is a clamp, over the shorter side: 1 mm for the sheet of
 #: the paper, whose clamps make layers of thickness sqrt(K_b/K_e) = 0.38 mm.
 CLAMP_SIZE_OVER_SIDE = 1 / 68
+#: Smallest size at corners and grips, over the size inside; far beyond it gmsh fails.
+SMALLEST_RATIO = 1e-4
 
 
 class Mesh(Part):
@@ -82,6 +84,11 @@ class Mesh(Part):
             Problem(not_allowed(value, f"be at most mesh.size ({size:.6g})"), (key,))
             for key, value in (("corner_size", corner_size), ("grip_size", grip_size))
             if value is not None and value > size
+        ]
+        problems += [
+            Problem(not_allowed(value, f"be at least {SMALLEST_RATIO:g} of mesh.size"), (key,))
+            for key, value in (("corner_size", self.corner_size), ("grip_size", self.grip_size))
+            if value is not None and value < SMALLEST_RATIO * size
         ]
         if problems:
             raise problem_error(*problems)

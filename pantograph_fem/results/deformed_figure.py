@@ -114,7 +114,7 @@ def draw_deformed(
     bar.set_label(QUANTITIES[quantity].label)
     load = f"load {100 * series.loads[index]:.4g} %"
     heading = wrap(title, int(LETTERS_PER_INCH * figure.get_figwidth()))
-    figure.suptitle("\n".join([*heading, load]), fontsize="medium")
+    figure.suptitle("\n".join([*heading, load]), fontsize="medium", parse_math=False)
     figure.savefig(path, dpi=DPI)
 
 

@@ -96,5 +96,5 @@ def draw_force(panels: Sequence[Panel], stable: NDArray[np.bool_], path: Path, t
         axes.axhline(0.0, color="0.8", linewidth=0.8, zorder=0)
         axes.set(xlabel=panel.xlabel, ylabel=panel.ylabel)
         axes.spines[["top", "right"]].set_visible(False)
-    figure.suptitle(fill(title, 55 * len(panels)), fontsize="medium")
+    figure.suptitle(fill(title, 55 * len(panels)), fontsize="medium", parse_math=False)
     figure.savefig(path, dpi=200)

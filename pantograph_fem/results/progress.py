@@ -23,17 +23,24 @@ class Progress:
         Title of the case, shown beside the bar.
     quiet
         Show nothing.
+    plain
+        Write lines even to a terminal.
     stream
         Where to write; standard output by default.
     """
 
     def __init__(
-        self, title: str = "", *, quiet: bool = False, stream: TextIO | None = None
+        self,
+        title: str = "",
+        *,
+        quiet: bool = False,
+        plain: bool = False,
+        stream: TextIO | None = None,
     ) -> None:
         self._stream = stream or sys.stdout
         self._quiet = quiet
         self._bar: Bar | None = None
-        if not quiet and self._stream.isatty():
+        if not quiet and not plain and self._stream.isatty():
             self._bar = Bar(
                 TextColumn("{task.description}", markup=False),
                 BarColumn(bar_width=None),
