@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -75,7 +76,7 @@ def run(
         comm = MPI.COMM_WORLD
     clock = Stopwatch()
     directory = directory or Path("results") / case.name
-    at_root(comm, lambda: _make_folder(directory))
+    at_root(comm, lambda: _check_folder(directory))
     saved = checkpoint.load(directory, comm, case) if resume else None
     simulation = build_simulation(case, comm, clock)
     recorder = Recorder(case, simulation, directory, clock, comm, quiet, saved)
@@ -97,16 +98,16 @@ def run(
     return RunResult(directory, tuple(recorder.rows))
 
 
-def _make_folder(directory: Path) -> None:
+def _check_folder(directory: Path) -> None:
     """Fail before anything is computed if results could not be written."""
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-        (directory / "history.csv").touch()
-    except OSError as error:
+    path = directory.absolute()
+    existing = next(place for place in (path, *path.parents) if place.exists())
+    if not existing.is_dir() or not os.access(existing, os.W_OK | os.X_OK):
+        what = "is not writable" if existing.is_dir() else "is a file"
         raise CaseError(
-            f"--output: {directory} cannot hold results ({error.strerror}); "
+            f"--output: {directory} cannot hold results, because {existing} {what}; "
             "give a folder that can be made or written to"
-        ) from None
+        )
 
 
 def _step_settings(case: Case) -> StepSettings:

@@ -215,7 +215,7 @@ def test_check_and_run_refuse_a_bad_case_in_the_same_words(tmp_path):
         (["run", "case.toml", "--speed", "fast"], ["--speed"]),
         (["run"], ["CASE.toml"]),
         (["simulate", "case.toml"], ["simulate"]),
-        (["plot", "."], ["case.resolved.toml is not found"]),
+        (["plot", "."], ["holds no results"]),
     ],
     ids=lambda value: " ".join(value) if value and value[0] in ("run", "plot", "simulate") else "",
 )
