@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from . import checkpoint
 from .case import case_to_toml
 from .checkpoint import Saved
+from .errors import CaseError
 from .parallel import at_root
 from .results.atomic import replace_text
 from .results.fields import FieldGrid, FieldsWriter
@@ -107,6 +108,12 @@ class Recorder:
         at_root(self._comm, lambda: self._finish(status, message))
 
     def _open(self, grid: FieldGrid | None) -> None:
+        try:
+            self._directory.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise CaseError(
+                f"--output: {self._directory} cannot be made ({error.strerror}); give another folder"
+            ) from None
         self._remove_stale()
         replace_text(self._directory / "case.resolved.toml", case_to_toml(self._case))
         self._history = HistoryWriter(
