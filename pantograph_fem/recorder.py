@@ -112,7 +112,7 @@ class Recorder:
             self._directory.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise CaseError(
-                f"--output: {self._directory} cannot be made ({error.strerror}); give another folder"
+                f"--output: {self._directory} cannot be made: {error.strerror}; give another"
             ) from None
         self._remove_stale()
         replace_text(self._directory / "case.resolved.toml", case_to_toml(self._case))
