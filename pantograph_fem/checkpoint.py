@@ -45,14 +45,14 @@ def fingerprint(case: Case) -> str:
     return digest.hexdigest()
 
 
-def save(directory: Path, comm: MPI.Comm, case: Case, saved: Saved) -> None:
+def save(directory: Path, comm: MPI.Comm, case_fingerprint: str, saved: Saved) -> None:
     """Replace the checkpoint of a run in one step; a collective call."""
     checkpoint = saved.checkpoint
     parts = comm.gather([(point.load, point.x, point.rate) for point in checkpoint.points], root=0)
 
     def write() -> None:
         arrays: dict[str, Any] = {
-            "fingerprint": fingerprint(case),
+            "fingerprint": case_fingerprint,
             "ranks": comm.size,
             "counts": [checkpoint.number, checkpoint.iterations, saved.rows, saved.states],
             "step_size": checkpoint.step_size,

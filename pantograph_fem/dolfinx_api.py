@@ -58,14 +58,6 @@ def _compiles(function: F) -> F:
     return quiet  # type: ignore[return-value]
 
 
-def versions() -> dict[str, str]:
-    """Versions of the libraries that a result depends on."""
-    return {
-        "dolfinx": dolfinx.__version__,
-        "petsc": ".".join(str(part) for part in PETSc.Sys.getVersion()),
-    }
-
-
 def atan2(y: Any, x: Any) -> Any:
     """Angle of the point (x, y), in (-π, π]."""
     return ufl.atan_2(y, x) if _OLD else ufl.atan2(y, x)

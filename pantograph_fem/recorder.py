@@ -47,6 +47,8 @@ class Recorder:
         self._directory = directory
         self._clock = clock
         self._comm = comm
+        # Once: it reads the mesh file, which may change while the run goes on.
+        self._fingerprint = checkpoint.fingerprint(case)
         self._progress = Progress(
             case.title or case.name,
             quiet=quiet or comm.rank != 0,
@@ -97,15 +99,15 @@ class Recorder:
 
             at_root(self._comm, write)
             # Last: if the run dies before this, it is taken up one state earlier.
-            checkpoint.save(self._directory, self._comm, self._case, before)
+            checkpoint.save(self._directory, self._comm, self._fingerprint, before)
 
     def rejected(self, load: float, step: float, reason: str) -> None:
         """Show a step that was cut back."""
         self._progress.rejected(load, step, reason)
 
-    def finish(self, status: str, message: str = "") -> None:
+    def finish(self, status: str) -> None:
         """Draw the figures and write the summary."""
-        at_root(self._comm, lambda: self._finish(status, message))
+        at_root(self._comm, lambda: self._finish(status))
 
     def _open(self, grid: FieldGrid | None) -> None:
         try:
@@ -135,21 +137,20 @@ class Recorder:
         if figures.is_dir() and not any(figures.iterdir()):
             figures.rmdir()
 
-    def _finish(self, status: str, message: str) -> None:
+    def _finish(self, status: str) -> None:
         # Before the figures too: a run is not lost because drawing it failed.
-        self._write_summary(status, message)
+        self._write_summary(status)
         if self._case.output.figures:
             from .plot import plot
 
             with self._clock("output"):
                 plot(self._directory)
-            self._write_summary(status, message)
+            self._write_summary(status)
 
-    def _write_summary(self, status: str, message: str) -> None:
+    def _write_summary(self, status: str) -> None:
         write_summary(
             self._directory / "summary.json",
             status=status,
-            message=message,
             last=self.rows[-1] if self.rows else None,
             dofs=self._simulation.dofs,
             cells=self._simulation.cells,

@@ -76,7 +76,11 @@ class SheetEquilibrium:
 
     def impose(self, x: Array, load: float) -> Array:
         """A copy of x with the grips where they are at the load factor."""
-        return self._with_data(x, [held.values(load) for held in self.held])
+        imposed = x.copy()
+        for held in self.held:
+            mine = held.dofs < self._owned
+            imposed[held.dofs[mine]] = held.values(load)[mine]
+        return imposed
 
     def residual(self, x: Array, r: PETSc.Vec) -> None:
         """Out-of-balance forces; zero at the held dofs, whose values x must already have."""
@@ -138,10 +142,3 @@ class SheetEquilibrium:
         return self._comm.allreduce(
             float(self._vector.array[held.dofs[mine]] @ virtual[mine]), MPI.SUM
         )
-
-    def _with_data(self, x: Array, data: Sequence[Array]) -> Array:
-        imposed = x.copy()
-        for held, values in zip(self.held, data, strict=True):
-            mine = held.dofs < self._owned
-            imposed[held.dofs[mine]] = values[mine]
-        return imposed
