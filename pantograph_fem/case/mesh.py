@@ -79,7 +79,7 @@ class Mesh(Part):
         corner_size = self.corner_size or CORNER_SIZE_OVER_SIZE * size
         grip_size = self.grip_size
         if grip_size is None and grips.clamped:
-            grip_size = min(size, CLAMP_SIZE_OVER_SIDE * side)
+            grip_size = max(min(size, CLAMP_SIZE_OVER_SIDE * side), SMALLEST_RATIO * size)
         problems = [
             Problem(not_allowed(value, f"be at most mesh.size ({size:.6g})"), (key,))
             for key, value in (("corner_size", corner_size), ("grip_size", grip_size))
