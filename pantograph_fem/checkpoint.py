@@ -40,8 +40,8 @@ def fingerprint(case: Case) -> str:
     """Hash of what determines the equilibria of a case."""
     physics = case.model_dump(mode="json", exclude=_FREE)
     digest = hashlib.sha256(json.dumps(physics, sort_keys=True).encode())
-    if case.mesh.file is not None:
-        digest.update(case.mesh.file.read_bytes())
+    for path in case.input_files:
+        digest.update(path.read_bytes())
     return digest.hexdigest()
 
 

@@ -5,12 +5,18 @@ from __future__ import annotations
 import os
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from . import __version__
 from .errors import PantographError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from .case import Case
+    from .run import RunResult
 
 app = typer.Typer(
     name="pantograph",
@@ -62,16 +68,7 @@ def run(
     from .case import load_case
 
     case = load_case(case_file, overrides or ())
-    # The fronts of the factorisation are small: threads cost more than they bring.
-    for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
-        os.environ.setdefault(threads, "1")
-    import petsc4py
-
-    # A closed pipe or an interrupt is no crash: no PETSc report of a segmentation fault.
-    petsc4py.init(["pantograph", "-no_signal_handler"])
-    from .run import run as run_case  # dolfinx is imported only for a case that is right
-
-    result = run_case(case, output, resume=resume, quiet=quiet)
+    result = _solver()(case, output, resume=resume, quiet=quiet)
     if result.rows and not quiet:
         typer.echo(f"Done: {result.rows[-1].step} steps; results are in {result.directory}")
 
@@ -94,6 +91,76 @@ def plot(
 
     for path in plot_results(directory):
         typer.echo(path)
+
+
+@app.command()
+def compare(
+    what: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="WHAT", help="Folders of results, case files, and at most one study file."
+        ),
+    ],
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="DIR",
+            help="Where runs and comparison go.",
+            show_default="results/<name of the study>, or results/compare",
+        ),
+    ] = None,
+    overrides: Overrides = None,
+    rerun: Annotated[
+        bool, typer.Option("--rerun", help="Run cases again whose results are there.")
+    ] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Show no progress.")] = False,
+) -> None:
+    """Put results side by side, with differences and orders of convergence.
+
+    Cases are run first, unless their results are there. Without a study file differences are taken
+    against the first of the results.
+    """
+    from .compare import compare as compare_results
+    from .compare import write
+    from .compare.table import print_table
+
+    def runner() -> Callable[[Case, Path], RunResult]:
+        solve = _solver()
+        return lambda case, directory: solve(case, directory, quiet=quiet)
+
+    show = _rank() == 0
+    result = compare_results(
+        what,
+        output,
+        overrides=overrides or (),
+        rerun=rerun,
+        runner=runner,
+        tell=typer.echo if show and not quiet else lambda text: None,
+    )
+    if show:
+        write(result.comparison, result.directory)
+        print_table(result.comparison)
+        for run in result.comparison.outcomes:
+            if not run.done and run.entry.label not in result.stopped:
+                typer.echo(f"{run.entry.label}: {run.status}")
+        if not quiet:
+            typer.echo(f"Tables and figures are in {result.directory}")
+    if result.stopped:
+        raise result.stopped_error()
+
+
+def _solver() -> Callable[..., RunResult]:
+    """Import what simulates a case; only for a case that is right, as it takes seconds."""
+    # The fronts of the factorisation are small: threads cost more than they bring.
+    for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+        os.environ.setdefault(threads, "1")
+    import petsc4py
+
+    # A closed pipe or an interrupt is no crash: no PETSc report of a segmentation fault.
+    petsc4py.init(["pantograph", "-no_signal_handler"])
+    from .run import run
+
+    return run
 
 
 def main() -> None:

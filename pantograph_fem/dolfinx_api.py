@@ -38,6 +38,9 @@ _COMPILER_TIMEOUT = 120
 _OPTIONS = {"cffi_extra_compile_args": _COMPILER_FLAGS, "timeout": _COMPILER_TIMEOUT}
 _JIT = {"jit_params" if _OLD else "jit_options": _OPTIONS}
 
+#: Cells by their dimension.
+_CELLS = {1: "interval", 2: "triangle"}
+
 F = TypeVar("F", bound=Callable[..., Any])
 
 
@@ -64,43 +67,68 @@ def atan2(y: Any, x: Any) -> Any:
 
 
 @_compiles
-def create_triangle_mesh(
-    comm: MPI.Comm, points: NDArray[np.float64], triangles: NDArray[np.int64]
+def create_simplex_mesh(
+    comm: MPI.Comm, dimension: int, points: NDArray[np.float64], cells: NDArray[np.int64]
 ) -> mesh.Mesh:
-    """Distribute a mesh of straight triangles; only rank 0's arrays count."""
+    """Distribute a mesh of straight intervals (1) or triangles (2); only rank 0's arrays count."""
     if comm.rank != 0:
-        points, triangles = np.empty((0, 2)), np.empty((0, 3), dtype=np.int64)
-    cells = np.ascontiguousarray(triangles, dtype=np.int64)
-    domain = ufl.Mesh(lagrange(1, (2,)))
+        points, cells = np.empty((0, dimension)), np.empty((0, dimension + 1), dtype=np.int64)
+    cells = np.ascontiguousarray(cells, dtype=np.int64)
+    domain = ufl.Mesh(_lagrange(1, (dimension,), _CELLS[dimension]))
     if _OLD:
         return mesh.create_mesh(comm, cells, points, domain)
     # By name: the order of the two changed in 0.10.
     return mesh.create_mesh(comm, cells, x=points, e=domain)
 
 
-def tagged_facets(domain: mesh.Mesh, edges: NDArray[np.int64], tags: NDArray[np.int32]) -> MeshTags:
-    """Facet tags from edges given by input vertex numbers; only rank 0's arrays count."""
+def tagged_facets(
+    domain: mesh.Mesh, facets: NDArray[np.int64], tags: NDArray[np.int32]
+) -> MeshTags:
+    """Facet tags from facets given by input vertex numbers; only rank 0's arrays count.
+
+    A facet is an edge of a triangle, shape (n, 2), or an end of an interval, shape (n, 1).
+    """
+    dim = domain.topology.dim - 1
     if domain.comm.rank != 0:
-        edges, tags = np.empty((0, 2), dtype=np.int64), np.empty(0, dtype=np.int32)
-    domain.topology.create_entities(1)
-    domain.topology.create_connectivity(1, 0)
-    domain.topology.create_connectivity(1, 2)
+        facets, tags = np.empty((0, dim + 1), dtype=np.int64), np.empty(0, dtype=np.int32)
+    domain.topology.create_entities(dim)
+    domain.topology.create_connectivity(dim, 0)
+    domain.topology.create_connectivity(dim, dim + 1)
     entities, values = io.distribute_entity_data(
-        domain._mesh if _OLD else domain, 1, np.ascontiguousarray(edges, dtype=np.int64), tags
+        domain._mesh if _OLD else domain, dim, np.ascontiguousarray(facets, dtype=np.int64), tags
     )
     adjacency = (graph.create_adjacencylist if _OLD else graph.adjacencylist)(entities)
-    return mesh.meshtags_from_entities(domain, 1, adjacency, values.astype(np.int32))
+    return mesh.meshtags_from_entities(domain, dim, adjacency, values.astype(np.int32))
 
 
-def lagrange(degree: int, shape: tuple[int, ...] = ()) -> Any:
-    """Continuous Lagrange element on triangles: scalar (), vector (n,) or tensor (n, m)."""
+def lagrange(degree: int, shape: tuple[int, ...], domain: mesh.Mesh) -> Any:
+    """Continuous Lagrange element on a mesh: scalar (), vector (n,) or tensor (n, m)."""
+    return _lagrange(degree, shape, _CELLS[domain.topology.dim])
+
+
+def _lagrange(degree: int, shape: tuple[int, ...], cell: str) -> Any:
     if not _OLD:
-        return basix.ufl.element("Lagrange", "triangle", degree, shape=shape)
+        return basix.ufl.element("Lagrange", cell, degree, shape=shape)
     if not shape:
-        return ufl.FiniteElement("Lagrange", ufl.triangle, degree)
+        return ufl.FiniteElement("Lagrange", cell, degree)
     if len(shape) == 1:
-        return ufl.VectorElement("Lagrange", ufl.triangle, degree, dim=shape[0])
-    return ufl.TensorElement("Lagrange", ufl.triangle, degree, shape=shape)
+        return ufl.VectorElement("Lagrange", cell, degree, dim=shape[0])
+    return ufl.TensorElement("Lagrange", cell, degree, shape=shape)
+
+
+def piecewise_constant(domain: mesh.Mesh) -> Any:
+    """Element of scalars that are constant on each cell."""
+    cell = _CELLS[domain.topology.dim]
+    if _OLD:
+        return ufl.FiniteElement("DG", cell, 0)
+    return basix.ufl.element("DG", cell, 0)
+
+
+def cell_size(domain: mesh.Mesh) -> Any:
+    """Length of an interval, longest side of a triangle, m."""
+    if domain.topology.dim == 1:  # 0.5 cannot evaluate the diameter of an interval
+        return abs(ufl.Jacobian(domain)[0, 0])
+    return ufl.CellDiameter(domain)
 
 
 def mixed(elements: Sequence[Any]) -> Any:
@@ -131,7 +159,7 @@ def cell_dofs(space: fem.FunctionSpace) -> NDArray[np.int32]:
 
 
 def cell_vertices(domain: mesh.Mesh) -> NDArray[np.int32]:
-    """Geometry nodes of each local cell, shape (cells, 3)."""
+    """Geometry nodes of each local cell, shape (cells, vertices)."""
     return _rows(domain.geometry.dofmap)
 
 
@@ -202,9 +230,9 @@ def scatter_reverse_add(vector: Vector) -> None:
 
 
 def containing_cells(domain: mesh.Mesh, points: NDArray[np.float64]) -> NDArray[np.int32]:
-    """A local cell that holds each point of shape (n, 2), or -1."""
+    """A local cell that holds each point of shape (n, d), or -1."""
     padded = np.zeros((len(points), 3))
-    padded[:, :2] = points
+    padded[:, : points.shape[1]] = points
     if _OLD:
         tree = geometry.BoundingBoxTree(domain, domain.topology.dim)
         candidates = geometry.compute_collisions(tree, padded)

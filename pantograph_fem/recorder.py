@@ -12,7 +12,8 @@ from .checkpoint import Saved
 from .errors import CaseError
 from .parallel import at_root
 from .results.atomic import replace_text
-from .results.fields import FieldGrid, FieldsWriter
+from .results.fields import FieldGrid
+from .results.fields_writer import FieldsWriter
 from .results.history import HistoryRow, HistoryWriter
 from .results.progress import Progress
 from .results.summary import package_versions, write_summary
@@ -93,7 +94,7 @@ class Recorder:
                 self.rows.append(observation.row)
                 self._history.write(observation.row)
                 if self._fields is not None and keep:
-                    self._fields.write(step.load, observation.fields)
+                    self._fields.write(step.load, observation.fields, observation.cell_fields)
                     self._states += 1
                 self._progress.accepted(observation.row, self._clock.total)
 
@@ -119,7 +120,10 @@ class Recorder:
         self._remove_stale()
         replace_text(self._directory / "case.resolved.toml", case_to_toml(self._case))
         self._history = HistoryWriter(
-            self._directory / "history.csv", len(self._case.output.probes), self._kept_rows
+            self._directory / "history.csv",
+            len(self._case.output.probes),
+            self._kept_rows,
+            self._simulation.extra_columns,
         )
         if self._case.output.fields != "none" and grid is not None:
             self._fields = FieldsWriter(self._directory, grid, self._kept_states)

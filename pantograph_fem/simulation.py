@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Protocol
 
+from .case import BeamCase, ChainCase, LatticeCase, SheetCase
 from .results.fields import FieldGrid
 from .results.history import HistoryRow
 from .solve.continuation import Array, Equilibrium, Step
@@ -18,10 +19,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Observation:
-    """What is reported of a state: a row of ``history.csv`` and nodal fields by name."""
+    """What is reported of a state: a row of ``history.csv``, and fields by name.
+
+    `fields` has values on the nodes of the grid, `cell_fields` on its cells.
+    """
 
     row: HistoryRow
     fields: dict[str, Array]
+    cell_fields: dict[str, Array] = field(default_factory=dict)
 
 
 class Simulation(Protocol):
@@ -29,6 +34,8 @@ class Simulation(Protocol):
 
     cells: int
     dofs: dict[str, int]
+    #: Names of the columns of ``history.csv`` between `shear_max` and the probes, in order.
+    extra_columns: tuple[str, ...]
 
     @property
     def path(self) -> Equilibrium:
@@ -47,8 +54,21 @@ class Simulation(Protocol):
 
 def build_simulation(case: Case, comm: MPI.Comm, clock: Stopwatch) -> Simulation:
     """The simulation of a case's kind; only that kind's code is imported."""
-    if case.kind == "sheet":
-        from .sheet.simulation import SheetSimulation
+    match case:
+        case SheetCase():
+            from .sheet.simulation import SheetSimulation
 
-        return SheetSimulation(case, comm, clock)
+            return SheetSimulation(case, comm, clock)
+        case BeamCase():
+            from .beam.simulation import BeamSimulation
+
+            return BeamSimulation(case, comm, clock)
+        case LatticeCase():
+            from .lattice.simulation import LatticeSimulation
+
+            return LatticeSimulation(case, comm, clock)
+        case ChainCase():
+            from .lattice.simulation import ChainSimulation
+
+            return ChainSimulation(case, comm, clock)
     raise NotImplementedError(case.kind)

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pantograph_fem.case import Case, case_from_dict, case_to_toml, load_case
+from pantograph_fem.case import SheetCase, case_from_dict, case_to_toml, load_case
 from pantograph_fem.errors import CaseError
 
 
@@ -200,7 +200,7 @@ grip = st.fixed_dictionaries(
 
 
 @st.composite
-def cases(draw: st.DrawFn) -> Case:
+def cases(draw: st.DrawFn) -> SheetCase:
     """Valid cases, with any of the optional keys."""
     width, height = draw(positive), draw(positive)
     degree = draw(st.sampled_from([2, 3]))
@@ -262,15 +262,15 @@ def cases(draw: st.DrawFn) -> Case:
 
 @settings(deadline=None)  # the machine may be busy
 @given(cases())
-def test_the_resolved_text_gives_an_equal_case(case: Case) -> None:
+def test_the_resolved_text_gives_an_equal_case(case: SheetCase) -> None:
     assert case_from_dict(tomllib.loads(case_to_toml(case))) == case
 
 
 @settings(deadline=None)  # the machine may be busy
 @given(cases())
-def test_the_resolved_text_holds_every_value(case: Case) -> None:
+def test_the_resolved_text_holds_every_value(case: SheetCase) -> None:
     resolved = tomllib.loads(case_to_toml(case))
-    assert set(resolved) == set(Case.model_fields)
+    assert set(resolved) == set(SheetCase.model_fields)
     for section in ("sheet", "discretisation", "continuation", "output"):
         assert set(resolved[section]) == set(type(getattr(case, section)).model_fields)
     for side in ("bottom", "top"):
@@ -279,7 +279,7 @@ def test_the_resolved_text_holds_every_value(case: Case) -> None:
 
 KEYS = [("name",), ("title",), ("kind",), ("grips", "top"), ("grips", "top", "pivot")] + [
     path
-    for section, field in Case.model_fields.items()
+    for section, field in SheetCase.model_fields.items()
     if hasattr(field.annotation, "model_fields")
     for path in [(section,), *((section, key) for key in field.annotation.model_fields)]
 ]

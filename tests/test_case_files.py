@@ -7,13 +7,13 @@ from pathlib import Path
 
 import pytest
 
-from pantograph_fem.case import Case, load_case
+from pantograph_fem.case import SheetCase, load_case
 
 FOLDER = Path(__file__).parents[1] / "cases"
 W, H = 0.068, 0.204
 
 
-def case(name: str) -> Case:
+def case(name: str) -> SheetCase:
     return load_case(FOLDER / f"{name}.toml")
 
 

@@ -159,7 +159,9 @@ def test_a_name_is_a_plain_file_name(name: str) -> None:
 
 
 def test_an_unknown_kind_hides_other_problems_as_they_depend_on_it() -> None:
-    assert problems(kind="plate", beam={}) == ['kind: "plate" is not allowed; it must be "sheet"']
+    assert problems(kind="plate", beam={}) == [
+        'kind: "plate" is not allowed; it must be "sheet", "lattice", "beam" or "chain"'
+    ]
 
 
 @pytest.mark.parametrize("material", [{}, {"shear": 0.0}, {"stretch": [0, 0], "bending": 0}])

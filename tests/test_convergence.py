@@ -10,13 +10,13 @@ from mpi4py import MPI
 from dolfinx import fem
 
 from pantograph_fem import dolfinx_api as api
+from pantograph_fem.continuum.equilibrium import ContinuumEquilibrium
 from pantograph_fem.mesh import rectangle
 from pantograph_fem.physics.energy import sheet_energy
 from pantograph_fem.physics.rigid_motion import RigidMotion
 from pantograph_fem.schemes import Scales, micromorphic
 from pantograph_fem.sheet.domain import GRIPS, distribute
-from pantograph_fem.sheet.equilibrium import SheetEquilibrium
-from pantograph_fem.sheet.grip import Grip
+from pantograph_fem.sheet.grip import Grip, GripSupport
 from pantograph_fem.solve.newton import NewtonSolver
 
 WIDTH, HEIGHT = 1.0, 2.0
@@ -46,7 +46,7 @@ def errors(size, degree, auxiliary_degree):
     d = micromorphic(
         domain.mesh,
         energy,
-        Scales(1.0, 1.0),
+        Scales(1.0, 1.0, 2),
         degree=degree,
         auxiliary_degree=auxiliary_degree,
         quadrature_degree=2 * degree + 2,
@@ -62,18 +62,21 @@ def errors(size, degree, auxiliary_degree):
     grips = [
         Grip(domain.facets[name], RigidMotion(), clamp=False, centre=(0.0, 0.0)) for name in GRIPS
     ]
-    problem = SheetEquilibrium(d, grips)
+    problem = ContinuumEquilibrium(d, [GripSupport(grip, d) for grip in grips])
     free = np.ones(len(load_vector.array))
     free[problem._owned_dofs] = 0.0
 
     def residual(x, r):
-        problem.residual(x, r)
+        problem.residual(x, 0.0, r)
         r.array[:] -= free * load_vector.array
 
-    solver = NewtonSolver(residual, problem.tangent, problem.matrix(), problem.typical_sizes, 1.0)
+    def tangent(x, A):
+        problem.tangent(x, 0.0, A)
+
+    solver = NewtonSolver(residual, tangent, problem.matrix(), problem.typical_sizes, 1.0)
     result = solver.solve(problem.undeformed())
     assert result.converged, result.reason
-    problem.load_state(result.x)
+    problem.load_state(result.x, 0.0)
     uh, Hh, Lh = ufl.split(d.state)
     dx = ufl.dx(metadata={"quadrature_degree": 2 * degree + 4})
     differences = (uh - u, ufl.grad(uh) - H, Hh - H, Lh - Lambda)

@@ -13,7 +13,8 @@ import pyvista
 from numpy.typing import NDArray
 
 from pantograph_fem.errors import CaseError
-from pantograph_fem.results.fields import FieldGrid, FieldsWriter, append_step, read_fields
+from pantograph_fem.results.fields import FieldGrid, read_fields
+from pantograph_fem.results.fields_writer import FieldsWriter, append_step
 
 LOADS = (0.0, 0.1 + 0.2, 1.0)
 
@@ -50,7 +51,7 @@ def test_states_read_back_exactly(tmp_path: Path) -> None:
     series = read_fields(tmp_path)
     assert series.loads.tolist() == list(LOADS)
     np.testing.assert_array_equal(series.grid.points, grid.points)
-    np.testing.assert_array_equal(series.grid.triangles, grid.triangles)
+    np.testing.assert_array_equal(series.grid.cells, grid.cells)
     for i, load in enumerate(LOADS):
         fields = series.fields(i)
         assert fields.keys() == state(grid, load).keys()
@@ -63,7 +64,7 @@ def test_meshio_reads_states_on_one_grid(tmp_path: Path) -> None:
     with meshio.xdmf.TimeSeriesReader(tmp_path / "fields.xdmf") as reader:
         points, cells = reader.read_points_cells()
         np.testing.assert_array_equal(points[:, :2], grid.points)
-        np.testing.assert_array_equal(cells[0].data, grid.triangles)
+        np.testing.assert_array_equal(cells[0].data, grid.cells)
         assert reader.num_steps == len(LOADS)
         for i, load in enumerate(LOADS):
             time, data, _ = reader.read_data(i)
@@ -82,11 +83,72 @@ def test_paraview_reader_warps_and_colours_the_same_grid(tmp_path: Path) -> None
     mesh = reader.read()
     expected = state(grid, 1.0)
     assert set(mesh.point_data) == set(expected)
-    assert mesh.n_cells == len(grid.triangles)
+    assert mesh.n_cells == len(grid.cells)
     warped = mesh.warp_by_vector("displacement")
     deformed = grid.points + expected["displacement"]
     np.testing.assert_allclose(warped.points[:, :2], deformed, rtol=1e-6)
     np.testing.assert_array_equal(warped["shear_angle"], expected["shear_angle"])
+
+
+def chain() -> FieldGrid:
+    """A closed ring of four links: as many nodes as links."""
+    points = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    return FieldGrid(points, np.array([[0, 1], [1, 2], [2, 3], [3, 0]]))
+
+
+RING = {"displacement": np.full((4, 2), 0.5), "angle": np.arange(4.0)}
+LINKS = {"stretch": np.array([1.1, 1.2, 1.3, 1.4]), "force": np.arange(8.0).reshape(4, 2)}
+
+
+def written_chain(directory: Path) -> FieldGrid:
+    writer = FieldsWriter(directory, chain())
+    writer.write(0.0, RING)
+    writer.write(1.0, RING, LINKS)
+    return chain()
+
+
+def test_fields_of_lines_and_of_their_nodes_are_kept_apart(tmp_path: Path) -> None:
+    grid = written_chain(tmp_path)
+    FieldsWriter(tmp_path, grid, kept=2).write(2.0, RING, {"angle": LINKS["stretch"]})
+    series = read_fields(tmp_path)
+    np.testing.assert_array_equal(series.grid.cells, grid.cells)
+    assert series.cell_fields(0) == {}
+    for index, expected in ((1, LINKS), (2, {"angle": LINKS["stretch"]})):
+        for found, given in ((series.fields(index), RING), (series.cell_fields(index), expected)):
+            assert found.keys() == given.keys()
+            for name, values in given.items():
+                np.testing.assert_array_equal(found[name], values)
+
+
+def test_meshio_reads_lines_with_their_fields(tmp_path: Path) -> None:
+    grid = written_chain(tmp_path)
+    with meshio.xdmf.TimeSeriesReader(tmp_path / "fields.xdmf") as reader:
+        _, cells = reader.read_points_cells()
+        assert [block.type for block in cells] == ["line"]
+        np.testing.assert_array_equal(cells[0].data, grid.cells)
+        _, nodal, of_cells = reader.read_data(1)
+    assert nodal.keys() == RING.keys()
+    np.testing.assert_array_equal(nodal["angle"], RING["angle"])
+    np.testing.assert_array_equal(of_cells["stretch"][0], LINKS["stretch"])
+
+
+def test_paraview_reader_finds_lines_with_their_fields(tmp_path: Path) -> None:
+    grid = written_chain(tmp_path)
+    reader = pyvista.get_reader(tmp_path / "fields.xdmf")
+    reader.set_active_time_value(1.0)
+    mesh = reader.read()
+    assert [mesh.get_cell(i).point_ids for i in range(mesh.n_cells)] == grid.cells.tolist()
+    assert set(mesh.point_data) == set(RING)
+    assert set(mesh.cell_data) == set(LINKS)
+    np.testing.assert_array_equal(mesh.cell_data["stretch"], LINKS["stretch"])
+    np.testing.assert_array_equal(mesh.point_data["angle"], RING["angle"])
+
+
+def test_field_of_cells_has_a_value_for_each_cell(tmp_path: Path) -> None:
+    grid = sheet()
+    writer = FieldsWriter(tmp_path, FieldGrid(grid.points, grid.cells[:7]))
+    with pytest.raises(ValueError, match=r"flux has shape \(12,\); allowed: \(7,\), \(7, 2\)"):
+        writer.write(0.0, {}, {"flux": np.zeros(12)})
 
 
 def test_each_step_is_readable_while_the_run_goes_on(tmp_path: Path) -> None:
@@ -103,7 +165,7 @@ def test_each_step_is_readable_while_the_run_goes_on(tmp_path: Path) -> None:
 def test_mesh_is_stored_once(tmp_path: Path) -> None:
     written(tmp_path)
     with h5py.File(tmp_path / "fields.h5", "r") as file:
-        assert set(file) == {"points", "triangles", "steps"}
+        assert set(file) == {"points", "cells", "steps"}
         assert all(set(step) == set(state(sheet(), 0.0)) for step in file["steps"].values())
 
 
@@ -135,7 +197,7 @@ def test_run_on_another_mesh_is_not_continued(tmp_path: Path) -> None:
     with pytest.raises(CaseError, match="3 states; 4"):
         FieldsWriter(tmp_path, grid, kept=4)
     with pytest.raises(CaseError, match="another mesh"):
-        FieldsWriter(tmp_path, FieldGrid(1.01 * grid.points, grid.triangles), kept=1)
+        FieldsWriter(tmp_path, FieldGrid(1.01 * grid.points, grid.cells), kept=1)
 
 
 def test_field_of_wrong_size_is_refused_before_anything_is_written(tmp_path: Path) -> None:

@@ -11,17 +11,20 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from pantograph_fem.errors import CaseError
-from pantograph_fem.results.deformed_figure import (
+from pantograph_fem.results.colours import (
     QUANTITIES,
-    area_percentile,
     colour_scale,
-    node_areas,
+    node_weights,
+    weighted_percentile,
 )
-from pantograph_fem.results.fields import FieldGrid, FieldsWriter
+from pantograph_fem.results.fields import FieldGrid
+from pantograph_fem.results.fields_writer import FieldsWriter
 from pantograph_fem.results.figures import draw_figures
 from pantograph_fem.results.force_figure import grip_panels
 from pantograph_fem.results.history import HistoryRow, HistoryWriter
 from pantograph_fem.results.material_lines import boundary_loops, material_lines
+from pantograph_fem.results.planar_pictures import planar_pictures
+from pantograph_fem.results.sheet_picture import sheet_painter
 
 W, H = 0.06, 0.18
 Array = NDArray[np.float64]
@@ -90,7 +93,7 @@ def test_lines_stop_at_a_hole() -> None:
 
 def test_boundary_of_a_sheet_with_a_hole_is_two_closed_loops() -> None:
     grid = sheet(6, lambda c: np.abs(c - [W / 2, H / 2]).max(axis=1) > W / 6)
-    loops = boundary_loops(grid.triangles)
+    loops = boundary_loops(grid.cells)
     assert all(loop[0] == loop[-1] for loop in loops)
     length = [np.linalg.norm(np.diff(grid.points[p], axis=0), axis=1).sum() for p in loops]
     np.testing.assert_allclose(sorted(length), [4 * W / 3, 2 * (W + H)])
@@ -98,8 +101,8 @@ def test_boundary_of_a_sheet_with_a_hole_is_two_closed_loops() -> None:
 
 def test_percentile_is_one_of_area() -> None:
     values, areas = np.array([3.0, 1.0, 2.0]), np.array([0.5, 90.0, 9.5])
-    assert [area_percentile(values, areas, p) for p in (50, 99, 100)] == [1.0, 2.0, 3.0]
-    assert node_areas(sheet()).sum() == pytest.approx(W * H)
+    assert [weighted_percentile(values, areas, p) for p in (50, 99, 100)] == [1.0, 2.0, 3.0]
+    assert node_weights(sheet()).sum() == pytest.approx(W * H)
 
 
 def test_colours_follow_the_sign() -> None:
@@ -173,11 +176,9 @@ def draw(directory: Path) -> list[str]:
     files = draw_figures(
         directory,
         title="Bias extension",
-        fibre_angle=45.0,
-        translation=(0.0, 0.05),
-        rotation=0.0,
         stops=[0.125, 0.5, 1.0],
-        line_spacing=0.0048,
+        panels=lambda history: grip_panels(history, (0.0, 0.05), 0.0),
+        pictures=planar_pictures(sheet_painter(0.0048, 45.0), "Bias extension"),
     )
     for path in files:
         assert np.ptp(np.asarray(Image.open(path).convert("L"))) > 200

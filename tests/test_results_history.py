@@ -60,6 +60,32 @@ def test_rows_read_back_exactly_and_at_once(tmp_path: Path) -> None:
     assert history["negative_pivots"].dtype.kind == "i"
 
 
+def test_columns_of_a_kind_stand_before_the_probes(tmp_path: Path) -> None:
+    path, extra = tmp_path / "history.csv", ("energy_foundation", "tip_ux", "tip_angle")
+    row = replace(
+        ROW,
+        energies={"foundation": 2.0, "stretch": 0.5},
+        extra={"tip_ux": -0.25, "tip_angle": np.float64(1 / 3)},
+    )
+    with HistoryWriter(path, probes=2, extra_columns=extra) as writer:
+        writer.write(row)
+        with pytest.raises(ValueError, match=r"other columns.*energy_foundation"):
+            writer.write(ROW)
+    probes = "probe0_ux,probe0_uy,probe1_ux,probe1_uy"
+    expected = f"{HEADER},energy_foundation,tip_ux,tip_angle,{probes}"
+    assert path.read_text().splitlines()[0] == expected
+    history = read_history(path)
+    assert history["energy"].tolist() == [2.5]
+    assert history["energy_foundation"].tolist() == [2.0]
+    assert history["tip_angle"].tolist() == [1 / 3]
+    assert history["probe1_ux"].tolist() == [1 / 7]
+    with HistoryWriter(path, probes=2, kept=1, extra_columns=extra) as writer:
+        writer.write(row)
+    assert len(read_history(path)["load"]) == 2
+    with pytest.raises(CaseError, match="other columns"):
+        HistoryWriter(path, probes=2, kept=1, extra_columns=extra[1:])
+
+
 def test_absent_effect_has_no_energy(tmp_path: Path) -> None:
     with HistoryWriter(tmp_path / "history.csv", probes=2) as writer:
         writer.write(ROW)

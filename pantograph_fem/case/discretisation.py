@@ -2,48 +2,47 @@
 
 from __future__ import annotations
 
-from typing import Any, Final, Literal
+from typing import Any, Literal
 
 from pydantic import Field, ValidationInfo, field_validator
 
 from .part import Part
 from .problem import Problem, not_allowed, problem_error
 
-_DEGREE: Final = 3
-
 
 def _default_auxiliary_degree(fields: dict[str, Any]) -> int:
-    return int(fields.get("degree", _DEGREE)) - 1
+    return int(fields["degree"]) - 1
 
 
-def _default_quadrature_degree(fields: dict[str, Any]) -> int:
+def _default_sheet_quadrature_degree(fields: dict[str, Any]) -> int:
     # Raising it from 5 to 6 at degree 3 changes the force of case a by 6e-6: cost without gain.
-    return int(fields.get("degree", _DEGREE)) + 2
+    return int(fields["degree"]) + 2
 
 
-class Discretisation(Part):
-    """Finite elements of the sheet.
+def _default_beam_quadrature_degree(fields: dict[str, Any]) -> int:
+    # On a line points are cheap.
+    return 2 * int(fields["degree"]) + 2
+
+
+class BeamDiscretisation(Part):
+    """Finite elements of a beam.
 
     Attributes
     ----------
     scheme
-        How the second gradient is treated.
+        How the second derivatives are treated.
     degree
         Polynomial degree of the displacement.
     auxiliary_degree
         Degree of the auxiliary gradient and of its multiplier; one less than `degree` by default.
     quadrature_degree
-        Degree integrated exactly; `degree` + 2 by default.
-    shear_regularisation
-        Angle below which the shear energy is rounded off, rad; not used for an exponent of 2,
-        whose energy is smooth.
+        Degree integrated exactly; 2 `degree` + 2 by default.
     """
 
     scheme: Literal["micromorphic"] = "micromorphic"
-    degree: Literal[2, 3] = _DEGREE
-    auxiliary_degree: int = Field(default_factory=_default_auxiliary_degree, ge=1, le=2)
-    quadrature_degree: int = Field(default_factory=_default_quadrature_degree, ge=2, le=20)
-    shear_regularisation: float = Field(default=1e-4, gt=0)
+    degree: Literal[2, 3, 4, 5] = 4
+    auxiliary_degree: int = Field(default_factory=_default_auxiliary_degree, ge=1, le=4)
+    quadrature_degree: int = Field(default_factory=_default_beam_quadrature_degree, ge=2, le=20)
 
     @field_validator("auxiliary_degree")
     @classmethod
@@ -53,3 +52,21 @@ class Discretisation(Part):
             rule = f"be less than discretisation.degree ({degree})"
             raise problem_error(Problem(not_allowed(value, rule)))
         return value
+
+
+class Discretisation(BeamDiscretisation):
+    """Finite elements of a sheet: those of a beam, of lower degree and with smoothed pivots.
+
+    Attributes
+    ----------
+    quadrature_degree
+        Degree integrated exactly; `degree` + 2 by default.
+    shear_regularisation
+        Angle below which the shear energy is rounded off, rad; not used for an exponent of 2,
+        whose energy is smooth.
+    """
+
+    degree: Literal[2, 3] = 3
+    auxiliary_degree: int = Field(default_factory=_default_auxiliary_degree, ge=1, le=2)
+    quadrature_degree: int = Field(default_factory=_default_sheet_quadrature_degree, ge=2, le=20)
+    shear_regularisation: float = Field(default=1e-4, gt=0)

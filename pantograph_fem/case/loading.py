@@ -10,10 +10,11 @@ from typing import Any
 from pydantic import ValidationError
 
 from ..errors import CaseError
+from .kinds import KINDS
 from .messages import case_error, explain
-from .model import KINDS, Case
+from .model import Case
 from .overrides import apply_overrides
-from .problem import not_allowed, value_text
+from .problem import not_allowed, one_of
 
 
 def load_case(path: Path, overrides: Sequence[str] = ()) -> Case:
@@ -79,8 +80,8 @@ def _validated(
     kind = data.get("kind", "sheet")
     # alone, as which keys are allowed depends on it
     if not isinstance(kind, str) or kind not in KINDS:
-        rule = "be " + " or ".join(value_text(allowed) for allowed in KINDS)
-        raise case_error(source, [*problems, f"kind: {not_allowed(kind, rule)}"])
+        text = not_allowed(kind, f"be {one_of(KINDS)}")
+        raise case_error(source, [*problems, f"kind: {text}"])
     model = KINDS[kind]
     try:
         case = model.model_validate(dict(data), context={"base": base})

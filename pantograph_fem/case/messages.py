@@ -13,7 +13,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
 from ..errors import CaseError
-from .problem import PROBLEM, not_allowed, path_text, value_text
+from .problem import PROBLEM, not_allowed, one_of, path_text
 
 _NOUNS: dict[object, str] = {
     float: "a number",
@@ -91,8 +91,7 @@ def _rule(field: FieldInfo | None, error_type: str) -> str:
     if section := _section(field):
         return f"be a section with the keys {', '.join(sorted(section.model_fields))}"
     if get_origin(field.annotation) is Literal:
-        *first, last = (value_text(choice) for choice in get_args(field.annotation))
-        return f"be {', '.join(first)} or {last}" if first else f"be {last}"
+        return f"be {one_of(get_args(field.annotation))}"
     bounds = _bounds(field.metadata)
     if error_type in _BOUNDS:
         return f"be {bounds}"

@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field
 
+from .beam import Beam
 from .part import Part, Point
 from .problem import Problem, not_allowed, problem_error
 from .sheet import Sheet
@@ -46,6 +47,17 @@ class Output(Part):
             Problem(not_allowed([x, y], rule), ("probes", i))
             for i, (x, y) in enumerate(self.probes)
             if not (0 <= x <= sheet.width and 0 <= y <= sheet.height)
+        ]
+        if problems:
+            raise problem_error(*problems)
+
+    def check_probes_on_axis(self, beam: Beam) -> None:
+        """Raise when a probe lies off the axis of a beam."""
+        rule = f"lie on the beam's axis, 0 <= x <= {beam.length} and y = 0"
+        problems = [
+            Problem(not_allowed([x, y], rule), ("probes", i))
+            for i, (x, y) in enumerate(self.probes)
+            if not (0 <= x <= beam.length and y == 0.0)
         ]
         if problems:
             raise problem_error(*problems)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
 from pydantic_core import PydanticCustomError
@@ -46,6 +46,12 @@ def value_text(value: object) -> str:
     """Write a value as in TOML."""
     text = _toml(value)
     return text if len(text) <= _LONGEST_VALUE else text[: _LONGEST_VALUE - 3] + "..."
+
+
+def one_of(choices: Iterable[object]) -> str:
+    """Write choices, such as ``"beam", "chain" or "sheet"``."""
+    *first, last = (value_text(choice) for choice in choices)
+    return f"{', '.join(first)} or {last}" if first else last
 
 
 def path_text(keys: tuple[str | int, ...]) -> str:

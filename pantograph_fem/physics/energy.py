@@ -1,6 +1,7 @@
-r"""Energy densities of (31) and their sum over the effects that a sheet has.
+r"""Energy densities of (31) and (16), and their sum over the effects that a sheet or beam has.
 
-All densities are per reference area, J/m².
+A beam is one family of fibres in one dimension: its densities are per reference length, J/m, those
+of a sheet per reference area, J/m².
 """
 
 from __future__ import annotations
@@ -15,12 +16,12 @@ from .kinematics import Expr, curvature, fibre, fibre_gradient, shear_angle, str
 
 
 def stretch_density(rho: Expr, K_e: Expr) -> Expr:
-    r"""Stretching of a fibre family, first term of (31): :math:`\tfrac12 K_e(\rho-1)^2`."""
+    r"""Stretching of a fibre family, first term of (31) and (16): ½ K_e (ρ - 1)²."""
     return 0.5 * K_e * (rho - 1) ** 2
 
 
 def bending_density(kappa: Expr, K_b: Expr) -> Expr:
-    r"""Bending of a fibre family, second term of (31): :math:`\tfrac12 K_b\kappa^2`."""
+    r"""Bending of a fibre family, second term of (31) and (16): ½ K_b κ²."""
     return 0.5 * K_b * kappa**2
 
 
@@ -40,36 +41,58 @@ def shear_density(psi: Expr, K_p: Expr, gamma: Expr, delta: Expr) -> Expr:
     return 0.5 * K_p * ((psi**2 + delta**2) ** (gamma / 2) - delta**gamma)
 
 
+def foundation_density(u: Expr, K_w: Expr) -> Expr:
+    r"""Winkler springs that hold a beam in both directions, §3.1: ½ K_w ‖u‖²."""
+    return 0.5 * K_w * ufl.dot(u, u)
+
+
 @dataclass(frozen=True)
-class SheetEnergy:
-    """Energy (31) as a sum of the effects that have a stiffness.
+class FibreEnergy:
+    """Energy (31) of a sheet or (16) of a beam as a sum of the effects that have a stiffness.
+
+    With d the dimension of the reference configuration, 2 or 1:
 
     Attributes
     ----------
+    reference
+        Gradient of the reference placement, shape (2, d).
     directions
-        Unit reference directions (D1, D2) of the fibres.
+        Unit reference direction of each family, shape (d,).
     stretch, bending
-        (family index, stiffness) of each family that has one; N/m and N m.
+        (family index, stiffness) of each family that has one; N/m and N m for a sheet, N and
+        N m² for a beam.
     shear
         Stiffness of the pivots, N/m, or None.
     exponent, regularisation
         γ and δ of the pivots; None where γ = 2, which needs neither.
+    foundation
+        Stiffness of the foundation, N/m² for a beam, or None.
     """
 
-    directions: tuple[Expr, Expr]
+    reference: Expr
+    directions: tuple[Expr, ...]
     stretch: tuple[tuple[int, Expr], ...] = ()
     bending: tuple[tuple[int, Expr], ...] = ()
     shear: Expr | None = None
     exponent: Expr | None = None
     regularisation: Expr | None = None
+    foundation: Expr | None = None
 
     @property
     def second_gradient(self) -> bool:
         """Whether the energy depends on ∇F, by bending."""
         return bool(self.bending)
 
+    def displacement_densities(self, u: Expr) -> dict[str, Expr]:
+        """Density of the foundation, by name of the effect; u has shape (2,)."""
+        return (
+            {}
+            if self.foundation is None
+            else {"foundation": foundation_density(u, self.foundation)}
+        )
+
     def first_gradient_densities(self, F: Expr) -> dict[str, Expr]:
-        """Densities of stretch and shear, by name of the effect; F has shape (2, 2)."""
+        """Densities of stretch and shear, by name of the effect; F has shape (2, d)."""
         densities: dict[str, Expr] = {}
         if self.stretch:
             densities["stretch"] = sum(
@@ -86,7 +109,7 @@ class SheetEnergy:
         return densities
 
     def second_gradient_densities(self, F: Expr) -> dict[str, Expr]:
-        """Density of bending; F has shape (2, 2) and a gradient that is square integrable."""
+        """Density of bending; F has shape (2, d) and a gradient that is square integrable."""
         if not self.bending:
             return {}
         kappas = self.curvatures(F)
@@ -94,10 +117,9 @@ class SheetEnergy:
             "bending": sum(bending_density(kappas[family], K_b) for family, K_b in self.bending)
         }
 
-    def curvatures(self, F: Expr) -> tuple[Expr, Expr]:
-        """Curvatures of both families, 1/m."""
-        first, second = (curvature(fibre(F, D), fibre_gradient(F, D)) for D in self.directions)
-        return first, second
+    def curvatures(self, F: Expr) -> tuple[Expr, ...]:
+        """Curvature of each family, 1/m."""
+        return tuple(curvature(fibre(F, D), fibre_gradient(F, D)) for D in self.directions)
 
 
 def sheet_energy(
@@ -109,7 +131,7 @@ def sheet_energy(
     shear: float | None = None,
     exponent: float = 2.0,
     regularisation: float = 1e-4,
-) -> SheetEnergy:
+) -> FibreEnergy:
     """Energy (31) from numbers; an effect that is None or has no stiffness is left out.
 
     `constant` makes a coefficient of a number, so that another number needs no other form.
@@ -121,11 +143,32 @@ def sheet_energy(
     def families(stiffness: tuple[float, float] | None) -> tuple[tuple[int, Expr], ...]:
         return tuple((family, constant(K)) for family, K in enumerate(stiffness or ()) if K)
 
-    return SheetEnergy(
+    return FibreEnergy(
+        reference=ufl.Identity(2),
         directions=(ufl.as_vector((c, s)), ufl.as_vector((-s, c))),
         stretch=families(stretch),
         bending=families(bending),
         shear=constant(shear) if shear else None,
         exponent=constant(exponent) if power else None,
         regularisation=constant(regularisation) if power else None,
+    )
+
+
+def beam_energy(
+    *,
+    constant: Callable[[float], Expr],
+    stretch: float | None = None,
+    bending: float | None = None,
+    foundation: Expr | None = None,
+) -> FibreEnergy:
+    """Energy (16) of a beam along x from numbers; an effect that is None or 0 is left out.
+
+    `foundation` (N/m²) may vary along the beam.
+    """
+    return FibreEnergy(
+        reference=ufl.as_matrix(((1.0,), (0.0,))),
+        directions=(ufl.as_vector((1.0,)),),
+        stretch=((0, constant(stretch)),) if stretch else (),
+        bending=((0, constant(bending)),) if bending else (),
+        foundation=foundation,
     )

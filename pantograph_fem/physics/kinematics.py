@@ -1,8 +1,9 @@
-r"""Kinematics of two families of fibres in a plane sheet, as pure UFL functions.
+r"""Kinematics of families of fibres that move in the plane, as pure UFL functions.
 
 A fibre of family :math:`\alpha` has the unit reference direction :math:`\mathbf D_\alpha`; the
 placement gradient :math:`\mathbf F = \nabla\boldsymbol\chi` takes it to
-:math:`\mathbf a_\alpha = \mathbf F\mathbf D_\alpha`. All vectors are in the plane, shape (2,).
+:math:`\mathbf a_\alpha = \mathbf F\mathbf D_\alpha`, shape (2,). A sheet has two families and F of
+shape (2, 2); a beam is one fibre, D of shape (1,) and F of shape (2, 1).
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ def cross(a: Expr, b: Expr) -> Expr:
 
 
 def fibre(F: Expr, D: Expr) -> Expr:
-    r"""Current fibre vector :math:`\mathbf a = \mathbf F\mathbf D`; F has shape (2, 2)."""
+    r"""Current fibre vector :math:`\mathbf a = \mathbf F\mathbf D`."""
     return ufl.dot(F, D)
 
 
@@ -47,6 +48,11 @@ def curvature(a: Expr, da: Expr) -> Expr:
     In the plane its square is exactly the bracket of (31), and of (16) for a beam.
     """
     return cross(a, da) / ufl.dot(a, a)
+
+
+def direction_angle(a: Expr) -> Expr:
+    """Angle φ from x to a fibre vector, in (-π, π]."""
+    return atan2(a[1], a[0])
 
 
 def shear_angle(a1: Expr, a2: Expr) -> Expr:

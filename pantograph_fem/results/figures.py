@@ -2,32 +2,38 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from .deformed_figure import QUANTITIES, draw_deformed
 from .fields import XDMF_NAME, FieldSeries, read_fields
-from .force_figure import draw_force, grip_panels
+from .force_figure import Panel, draw_force
 from .history import read_history
+
+#: Names of all figures but the force curve, which every run has.
+PICTURES = ("shear_angle_[0-9]*.png", "energy_density_[0-9]*.png", "shapes.png", "profiles.png")
+
+#: Makes the panels of ``force_displacement.png`` of the columns of ``history.csv``.
+Panels = Callable[[Mapping[str, NDArray[Any]]], list[Panel]]
+#: Draws states, given by their numbers, into a folder and returns the files.
+Pictures = Callable[[FieldSeries, Sequence[int], Path], list[Path]]
 
 
 def draw_figures(
     directory: Path,
     *,
     title: str,
-    fibre_angle: float,
-    translation: tuple[float, float],
-    rotation: float,
     stops: Sequence[float],
-    line_spacing: float,
+    panels: Panels,
+    pictures: Pictures,
 ) -> list[Path]:
     """Draw ``figures/*.png`` in a results directory, in place of earlier ones.
 
-    The sheet is drawn at every stop that was reached and at the last state saved, whose load in
-    per cent is in the file's name: ``shear_angle_050.png``, ``energy_density_100.png``. A run that
-    saved no fields has its force-displacement curve alone.
+    The states at every stop that was reached and the last one saved are drawn. A run that saved no
+    fields has its force-displacement curve alone.
 
     Parameters
     ----------
@@ -35,16 +41,12 @@ def draw_figures(
         Results of a run, finished or not.
     title
         Title of the case.
-    fibre_angle
-        Angle from x to the first family of fibres, in degrees.
-    translation
-        Translation of the top grip at full load, relative to the bottom grip, in m.
-    rotation
-        Rotation of the top grip at full load, in degrees.
     stops
         Load factors of the stops.
-    line_spacing
-        Reference distance between neighbouring material lines of a family, in m.
+    panels
+        Makes the panels of ``force_displacement.png`` of the columns of ``history.csv``.
+    pictures
+        Draws the states.
 
     Returns
     -------
@@ -59,20 +61,15 @@ def draw_figures(
     history = read_history(directory / "history.csv")
     figures = directory / "figures"
     figures.mkdir(exist_ok=True)
-    for quantity in QUANTITIES:
-        for stale in figures.glob(f"{quantity}_[0-9]*.png"):
+    for pattern in PICTURES:
+        for stale in figures.glob(pattern):
             stale.unlink()
 
     drawn = [figures / "force_displacement.png"]
-    draw_force(grip_panels(history, translation, rotation), history["stable"], drawn[0], title)
-    if not (directory / XDMF_NAME).exists():
-        return drawn
-    series = read_fields(directory)
-    for index in stop_states(series, stops):
-        percent = f"{100 * series.loads[index]:07.3f}".rstrip("0").rstrip(".")
-        for quantity in QUANTITIES.keys() & series.fields(index).keys():
-            drawn.append(figures / f"{quantity}_{percent}.png")
-            draw_deformed(series, index, quantity, drawn[-1], line_spacing, fibre_angle, title)
+    draw_force(panels(history), history["stable"], drawn[0], title)
+    if (directory / XDMF_NAME).exists():
+        series = read_fields(directory)
+        drawn += pictures(series, stop_states(series, stops), figures)
     return sorted(drawn)
 
 

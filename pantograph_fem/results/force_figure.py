@@ -1,4 +1,4 @@
-"""Force-displacement and moment-rotation curves of the top grip."""
+"""Force-displacement and moment-rotation curves, and those of the top grip of a sheet."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def draw_force(panels: Sequence[Panel], stable: NDArray[np.bool_], path: Path, t
     Parameters
     ----------
     panels
-        What to draw, as `grip_panels` gives it.
+        What to draw, as `grip_panels` or `end_panels` gives it.
     stable
         Whether each state is stable, shape (k,).
     path

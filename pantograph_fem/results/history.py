@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import csv
 import os
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -29,11 +30,12 @@ class HistoryRow:
     load
         Load factor t.
     force
-        Force that the top grip exerts on the sheet, in N.
+        Force that the top grip, or the right end of a beam, exerts on what it holds, in N.
     moment
         Moment that it exerts about its current centre, in N m.
     energies
-        Energy in J by effect: "stretch", "bending", "shear"; an absent effect counts as 0.
+        Energy in J by effect. "stretch", "bending" and "shear" have columns in every table, and
+        count as 0 where they are absent; others, as "foundation", have theirs behind `shear_max`.
     newton_iterations
         Iterations of the step.
     negative_pivots, expected_negative_pivots
@@ -44,6 +46,8 @@ class HistoryRow:
         Extreme shear angles, in rad.
     probes
         Displacement (ux, uy) in m at each reference point of ``output.probes``.
+    extra
+        Further numbers by the name of their column, as "tip_angle", in SI units and rad.
     """
 
     step: int
@@ -58,6 +62,7 @@ class HistoryRow:
     shear_min: float
     shear_max: float
     probes: tuple[tuple[float, float], ...] = ()
+    extra: dict[str, float] = field(default_factory=dict)
 
     @property
     def energy(self) -> float:
@@ -83,16 +88,21 @@ class HistoryRow:
             "shear_min": float(self.shear_min),
             "shear_max": float(self.shear_max),
         }
+        for effect, energy in self.energies.items():
+            row.setdefault(f"energy_{effect}", float(energy))
+        for name, value in self.extra.items():
+            row[name] = float(value)
         for i, (ux, uy) in enumerate(self.probes):
             row[f"probe{i}_ux"] = float(ux)
             row[f"probe{i}_uy"] = float(uy)
         return row
 
 
-def header(probes: int) -> list[str]:
-    """Return the column names of a table with so many probes."""
-    origin = ((0.0, 0.0),) * probes
-    return list(HistoryRow(0, 0.0, (0.0, 0.0), 0.0, {}, 0, 0, 0, True, 0.0, 0.0, origin).columns())
+def header(probes: int, extra_columns: Sequence[str] = ()) -> list[str]:
+    """Return the column names of a table with so many probes and these columns before them."""
+    origin, extra = ((0.0, 0.0),) * probes, dict.fromkeys(extra_columns, 0.0)
+    row = HistoryRow(0, 0.0, (0.0, 0.0), 0.0, {}, 0, 0, 0, True, 0.0, 0.0, origin, extra)
+    return list(row.columns())
 
 
 class HistoryWriter:
@@ -106,6 +116,9 @@ class HistoryWriter:
         Number of probes.
     kept
         Number of rows already in the file to go on from; later ones are dropped.
+    extra_columns
+        Names of the columns between those of every table and the probes: the energies of other
+        effects as ``energy_<effect>``, then the names of `HistoryRow.extra`.
 
     Raises
     ------
@@ -113,8 +126,10 @@ class HistoryWriter:
         If the file has fewer than `kept` rows, or other columns.
     """
 
-    def __init__(self, path: Path, probes: int, kept: int = 0) -> None:
-        self._header = header(probes)
+    def __init__(
+        self, path: Path, probes: int, kept: int = 0, extra_columns: Sequence[str] = ()
+    ) -> None:
+        self._header = header(probes, extra_columns)
         lines = [",".join(self._header)]
         if kept:
             old = _complete_lines(path)[: kept + 1]
@@ -131,7 +146,10 @@ class HistoryWriter:
         """Add a row, with floats in full precision."""
         columns = row.columns()
         if list(columns) != self._header:
-            raise ValueError(f"the row has {len(row.probes)} probes, unlike the table")
+            raise ValueError(
+                f"the row, with {len(row.probes)} probes, has other columns than the table: "
+                f"{', '.join(columns)} instead of {', '.join(self._header)}"
+            )
         self._file.write(",".join(repr(value) for value in columns.values()) + "\n")
         self._file.flush()
         os.fsync(self._file.fileno())

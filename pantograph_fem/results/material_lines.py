@@ -71,7 +71,7 @@ def material_lines(
     return [
         curve
         for offset in spacing * np.arange(first, last + 1)
-        for curve in _cut(grid.triangles, height - offset, points @ along, deformed)
+        for curve in _cut(grid.cells, height - offset, points @ along, deformed)
     ]
 
 

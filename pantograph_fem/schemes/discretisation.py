@@ -9,22 +9,33 @@ import ufl
 
 from dolfinx import fem
 
-from ..physics.energy import SheetEnergy
-from ..physics.kinematics import Expr, fibre, shear_angle, stretch
+from ..physics.energy import FibreEnergy
+from ..physics.kinematics import Expr, fibre
 from .field import Field
 
 
 @dataclass(frozen=True)
 class Scales:
-    """Sizes by which solvers measure the unknowns: a length (m) and a stiffness (N/m)."""
+    """Sizes by which solvers measure the unknowns.
+
+    Attributes
+    ----------
+    length
+        Extent of the body, m.
+    stiffness
+        Largest stiffness, N/m of a sheet or N of a beam.
+    dimension
+        Dimension of the body: 2 for a sheet, 1 for a beam.
+    """
 
     length: float
     stiffness: float
+    dimension: int
 
     @property
     def energy(self) -> float:
         """Energy that goes with them, J."""
-        return self.stiffness * self.length**2
+        return self.stiffness * self.length**self.dimension
 
 
 @dataclass(frozen=True)
@@ -42,11 +53,12 @@ class Discretisation:
     energy
         The continuum energy that was discretised.
     densities
-        Energy density of each effect, J/m².
+        Energy density of each effect, J/m² of a sheet or J/m of a beam.
     displacement
         Displacement as a function of the state, m.
-    curvatures
-        Fibre curvatures as functions of the state, 1/m; None where no effect sees them.
+    bent_gradient
+        The placement gradient whose derivative is the curvature, shape (2, d); None where no
+        effect sees curvature.
     measure
         Integration measure, with its quadrature degree.
     scales
@@ -56,10 +68,10 @@ class Discretisation:
     state: fem.Function
     fields: tuple[Field, ...]
     functional: ufl.Form
-    energy: SheetEnergy
+    energy: FibreEnergy
     densities: dict[str, Expr]
     displacement: Expr
-    curvatures: tuple[Expr, Expr] | None
+    bent_gradient: Expr | None
     measure: ufl.Measure
     scales: Scales
 
@@ -72,20 +84,16 @@ class Discretisation:
         """Negative pivots that a stable state has: one per multiplier dof."""
         return sum(field.size for field in self.fields if field.multiplier)
 
-    def observables(self) -> dict[str, Expr]:
-        """Fields that a user looks at, by name; scalars, in SI units."""
-        F = ufl.Identity(2) + ufl.grad(self.displacement)
-        a1, a2 = (fibre(F, D) for D in self.energy.directions)
-        shown = {
-            "shear_angle": shear_angle(a1, a2),
-            "stretch_1": stretch(a1),
-            "stretch_2": stretch(a2),
-        }
-        if self.curvatures is not None:
-            shown["curvature_1"], shown["curvature_2"] = self.curvatures
-        shown["energy_density"] = sum(self.densities.values())
-        shown.update({f"energy_density_{name}": w for name, w in self.densities.items()})
-        return shown
+    @property
+    def fibres(self) -> tuple[Expr, ...]:
+        """Current vector of each fibre family, shape (2,)."""
+        F = self.energy.reference + ufl.grad(self.displacement)
+        return tuple(fibre(F, D) for D in self.energy.directions)
+
+    @property
+    def curvatures(self) -> tuple[Expr, ...]:
+        """Curvature of each fibre family, 1/m; none where no effect sees them."""
+        return () if self.bent_gradient is None else self.energy.curvatures(self.bent_gradient)
 
     def typical_sizes(self) -> np.ndarray:
         """Typical size of every local dof of the state, shape (dofs,), ghosts included."""

@@ -44,12 +44,12 @@ class Field:
 
     @property
     def coordinates(self) -> NDArray[np.float64]:
-        """Reference position of each block, shape (blocks, 2)."""
+        """Reference position of each block, shape (blocks, 2); that of a beam is along x."""
         return self.space.tabulate_dof_coordinates()[:, :2]
 
     def blocks_on(self, facets: NDArray[np.int32]) -> NDArray[np.int32]:
-        """Numbers of the blocks on some facets; a collective call."""
-        return fem.locate_dofs_topological(self.space, 1, facets)
+        """Numbers of the blocks on some facets: edges of a sheet, ends of a beam; collective."""
+        return fem.locate_dofs_topological(self.space, self.space.mesh.topology.dim - 1, facets)
 
 
 def fields_of(

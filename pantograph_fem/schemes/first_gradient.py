@@ -1,6 +1,6 @@
 r"""Displacement alone, for an energy without bending.
 
-.. math:: \Pi(\mathbf u) = \int_\Omega W_1(\mathbf I + \nabla\mathbf u)\,d\Omega
+.. math:: \Pi(\mathbf u) = \int_\Omega W_0(\mathbf u) + W_1(\nabla\boldsymbol\chi)\,d\Omega
 """
 
 from __future__ import annotations
@@ -10,23 +10,25 @@ import ufl
 from dolfinx import fem, mesh
 
 from .. import dolfinx_api as api
-from ..physics.energy import SheetEnergy
+from ..physics.energy import FibreEnergy
 from .discretisation import Discretisation, Scales, integration
 from .field import fields_of
 
 
 def first_gradient(
     domain: mesh.Mesh,
-    energy: SheetEnergy,
+    energy: FibreEnergy,
     scales: Scales,
     *,
     degree: int,
     quadrature_degree: int,
 ) -> Discretisation:
-    """Discretise an energy that depends on F alone; the only unknown is u in P(degree)."""
-    space = api.functionspace(domain, api.lagrange(degree, (2,)))
+    """Discretise an energy without curvature; the only unknown is u in P(degree)."""
+    space = api.functionspace(domain, api.lagrange(degree, (2,), domain))
     u = fem.Function(space, name="state")
-    densities = energy.first_gradient_densities(ufl.Identity(2) + ufl.grad(u))
+    densities = energy.displacement_densities(u) | energy.first_gradient_densities(
+        energy.reference + ufl.grad(u)
+    )
     dx = integration(quadrature_degree)
     return Discretisation(
         state=u,
@@ -35,7 +37,7 @@ def first_gradient(
         energy=energy,
         densities=densities,
         displacement=u,
-        curvatures=None,
+        bent_gradient=None,
         measure=dx,
         scales=scales,
     )

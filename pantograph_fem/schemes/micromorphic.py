@@ -1,10 +1,11 @@
 r"""The paper's scheme: an auxiliary gradient tied to ∇u by a Lagrange multiplier.
 
 .. math:: \Pi(\mathbf u, \mathbf H, \boldsymbol\Lambda) = \int_\Omega
-    W_1(\mathbf I + \nabla\mathbf u) + W_2(\mathbf I + \mathbf H)
+    W_0(\mathbf u) + W_1(\mathbf F_0 + \nabla\mathbf u) + W_2(\mathbf F_0 + \mathbf H)
     + \boldsymbol\Lambda : (\nabla\mathbf u - \mathbf H)\ d\Omega
 
-W1 holds stretch and shear, W2 bending, which takes one derivative of H instead of two of u.
+F0 is the gradient of the reference placement. W0 holds a foundation, W1 stretch and shear, W2
+bending, which takes one derivative of H instead of two of u.
 
 H and Λ share one continuous space: bending stiffens only :math:`\partial_\alpha(\mathbf H\mathbf
 D_\alpha)`, so every dof of H needs a multiplier to hold it, and a poorer Λ leaves the system
@@ -29,7 +30,7 @@ import ufl
 from dolfinx import fem, mesh
 
 from .. import dolfinx_api as api
-from ..physics.energy import SheetEnergy
+from ..physics.energy import FibreEnergy
 from .discretisation import Discretisation, Scales, integration
 from .field import fields_of
 
@@ -40,27 +41,30 @@ GAP_STIFFNESS = 4.0
 
 def micromorphic(
     domain: mesh.Mesh,
-    energy: SheetEnergy,
+    energy: FibreEnergy,
     scales: Scales,
     *,
     degree: int,
     auxiliary_degree: int,
     quadrature_degree: int,
 ) -> Discretisation:
-    """Discretise (31) with u in P(degree), H and Λ in P(auxiliary_degree).
+    """Discretise (31) or (16) with u in P(degree), H and Λ in P(auxiliary_degree).
 
     The stationary point is a saddle: as many negative pivots as multiplier dofs at a stable state.
     """
-    tensor = api.lagrange(auxiliary_degree, (2, 2))
-    space = api.functionspace(domain, api.mixed([api.lagrange(degree, (2,)), tensor, tensor]))
+    tensor = api.lagrange(auxiliary_degree, (2, domain.geometry.dim), domain)
+    vector = api.lagrange(degree, (2,), domain)
+    space = api.functionspace(domain, api.mixed([vector, tensor, tensor]))
     state = fem.Function(space, name="state")
     u, H, Lambda = ufl.split(state)
-    identity = ufl.Identity(2)
-    densities = energy.first_gradient_densities(
-        identity + ufl.grad(u)
-    ) | energy.second_gradient_densities(identity + H)
+    bent = energy.reference + H
+    densities = (
+        energy.displacement_densities(u)
+        | energy.first_gradient_densities(energy.reference + ufl.grad(u))
+        | energy.second_gradient_densities(bent)
+    )
     gap = ufl.grad(u) - H
-    h = ufl.CellDiameter(domain)
+    h = api.cell_size(domain)
     # Counted as bending, so that the stored energy is the work of the grips on any mesh.
     densities["bending"] += sum(
         0.5 * GAP_STIFFNESS * K_b / h**2 * ufl.dot(gap_of_fibre, gap_of_fibre)
@@ -78,7 +82,7 @@ def micromorphic(
         energy=energy,
         densities=densities,
         displacement=u,
-        curvatures=energy.curvatures(identity + H),
+        bent_gradient=bent,
         measure=dx,
         scales=scales,
     )

@@ -8,23 +8,23 @@ from mpi4py import MPI
 
 from dolfinx import fem
 
-from ..case import Case
+from ..case import SheetCase
 from ..case.grips import Grip as GripCase
 from ..mesh import Triangulation, read_mesh, rectangle
 from ..parallel import at_root
-from ..physics.energy import SheetEnergy, sheet_energy
+from ..physics.energy import FibreEnergy, sheet_energy
 from ..physics.rigid_motion import RigidMotion
 from ..schemes import Discretisation, Scales, first_gradient, micromorphic
 from .domain import GRIPS, Domain, distribute
 from .grip import Grip
 
 
-def build_domain(case: Case, comm: MPI.Comm) -> Domain:
+def build_domain(case: SheetCase, comm: MPI.Comm) -> Domain:
     """Mesh the sheet, or read its mesh, and distribute it; a collective call."""
     return distribute(comm, at_root(comm, lambda: triangulate(case)))
 
 
-def triangulate(case: Case) -> Triangulation:
+def triangulate(case: SheetCase) -> Triangulation:
     """The mesh that the case asks for."""
     options = case.mesh
     if options.file is not None:
@@ -41,7 +41,7 @@ def triangulate(case: Case) -> Triangulation:
     )
 
 
-def build_energy(case: Case, domain: Domain) -> SheetEnergy:
+def build_energy(case: SheetCase, domain: Domain) -> FibreEnergy:
     """Energy (31) of the effects that the case names, with coefficients that can change."""
     material = case.material
     return sheet_energy(
@@ -55,7 +55,7 @@ def build_energy(case: Case, domain: Domain) -> SheetEnergy:
     )
 
 
-def discretise(case: Case, domain: Domain) -> Discretisation:
+def discretise(case: SheetCase, domain: Domain) -> Discretisation:
     """The scheme applied to the energy; without bending the displacement is all there is."""
     energy = build_energy(case, domain)
     options = case.discretisation
@@ -78,7 +78,7 @@ def discretise(case: Case, domain: Domain) -> Discretisation:
     )
 
 
-def build_grips(case: Case, domain: Domain) -> list[Grip]:
+def build_grips(case: SheetCase, domain: Domain) -> list[Grip]:
     """Both grips, in the order of :data:`GRIPS`."""
     return [_grip(getattr(case.grips, name), domain, name) for name in GRIPS]
 
@@ -101,7 +101,7 @@ def _grip(grip: GripCase, domain: Domain, name: str) -> Grip:
     )
 
 
-def _scales(case: Case, domain: Domain) -> Scales:
+def _scales(case: SheetCase, domain: Domain) -> Scales:
     """Extent of the sheet, and the largest stiffness there is, in N/m."""
     material = case.material
     in_plane = max(material.stretch_pair or (0.0,))
@@ -110,4 +110,4 @@ def _scales(case: Case, domain: Domain) -> Scales:
         material.shear or 0.0,
         max(material.bending_pair or (0.0,)) / domain.extent**2,
     )
-    return Scales(length=domain.extent, stiffness=stiffness)
+    return Scales(length=domain.extent, stiffness=stiffness, dimension=2)

@@ -59,7 +59,7 @@ def distribute(comm: MPI.Comm, triangulation: Triangulation | None) -> Domain:
         }
         shared = (ends, float(np.hypot(*np.ptp(points, axis=0))))
     ends, extent = comm.bcast(shared, root=0)
-    domain = api.create_triangle_mesh(comm, points, triangles)
+    domain = api.create_simplex_mesh(comm, 2, points, triangles)
     facet_tags = api.tagged_facets(domain, edges, tags)
     facets = {name: facet_tags.find(tag) for tag, name in enumerate(GRIPS)}
     return Domain(domain, facets, ends, extent)

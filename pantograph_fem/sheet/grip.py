@@ -1,12 +1,14 @@
-"""Grips: boundary edges that move as rigid bodies, and what they exert on the sheet."""
+"""Grips: boundary edges that move as rigid bodies."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
+import ufl
 from numpy.typing import NDArray
 
+from ..physics.reaction import NO_REACTION, Reaction
 from ..physics.rigid_motion import QUARTER_TURN, RigidMotion
 from ..schemes import Discretisation
 
@@ -35,11 +37,15 @@ class Grip:
     centre: tuple[float, float]
 
 
-class HeldDofs:
-    """The dofs that a grip holds, their values and their virtual motions.
+class GripSupport:
+    """A grip by the dofs that it holds: all it does.
 
-    Arrays over the held dofs have the order of :attr:`dofs`.
+    Implements :class:`pantograph_fem.continuum.support.Support`.
     """
+
+    stored: dict[str, ufl.Form] = {}  # noqa: RUF012 - never changed
+    potential: ufl.Form | None = None
+    pull: ufl.Form | None = None
 
     def __init__(self, grip: Grip, discretisation: Discretisation) -> None:
         self._motion = grip.motion
@@ -82,6 +88,13 @@ class HeldDofs:
         return self._collect(
             (x - centre) @ QUARTER_TURN.T, QUARTER_TURN @ self._motion.rotation(load)
         )
+
+    def move(self, load: float) -> None:
+        """There are no forms to change."""
+
+    def exerted(self) -> Reaction:
+        """Nothing beyond what holds the dofs."""
+        return NO_REACTION
 
     def _collect(self, displacements: Array, gradient: Array) -> Array:
         return np.concatenate([displacements.ravel(), np.tile(gradient.ravel(), self._gradients)])

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 from mpi4py import MPI
 
-from ..case import Case
+from ..case import SheetCase
+from ..continuum.equilibrium import ContinuumEquilibrium
+from ..continuum.probes import Probes
+from ..continuum.sampling import FieldSampler
+from ..reporting import history_row
 from ..results.fields import FieldGrid
-from ..results.history import HistoryRow
 from ..simulation import Observation
 from ..solve.continuation import Array, Step
 from ..solve.newton import NewtonSettings
+from ..solve.path import NewtonPath
 from ..stopwatch import Stopwatch
 from .build import build_domain, build_grips, discretise
 from .domain import GRIPS
-from .equilibrium import SheetEquilibrium
-from .path import SheetPath
-from .probes import Probes
-from .sampling import FieldSampler
+from .grip import GripSupport
+from .observables import sheet_observables
 
 _REPORTED = GRIPS.index("top")
 
@@ -24,17 +26,22 @@ _REPORTED = GRIPS.index("top")
 class SheetSimulation:
     """Implements :class:`pantograph_fem.simulation.Simulation` for ``kind = "sheet"``."""
 
-    def __init__(self, case: Case, comm: MPI.Comm, clock: Stopwatch) -> None:
+    extra_columns: tuple[str, ...] = ()
+
+    def __init__(self, case: SheetCase, comm: MPI.Comm, clock: Stopwatch) -> None:
         """Mesh the sheet and compile its forms; a collective call."""
         with clock("mesh"):
             domain = build_domain(case, comm)
         with clock("compile"):
             discretisation = discretise(case, domain)
-            self._sampler = FieldSampler(discretisation, domain.mesh)
+            self._sampler = FieldSampler(
+                discretisation, domain.mesh, sheet_observables(discretisation)
+            )
         self._probes = Probes(discretisation, domain.mesh, case.output.probes)
-        self._equilibrium = SheetEquilibrium(discretisation, build_grips(case, domain), clock)
+        supports = [GripSupport(grip, discretisation) for grip in build_grips(case, domain)]
+        self._equilibrium = ContinuumEquilibrium(discretisation, supports, clock)
         options = case.continuation
-        self.path = SheetPath(
+        self.path = NewtonPath(
             self._equilibrium,
             NewtonSettings(options.tolerance, options.max_iterations),
             clock,
@@ -55,24 +62,12 @@ class SheetSimulation:
     def observe(self, step: Step) -> Observation | None:
         """Numbers and fields of a state on rank 0, None elsewhere; a collective call."""
         reaction = self._equilibrium.reactions(step.x, step.load)[_REPORTED]
-        energies = self._equilibrium.energies(step.x)
+        energies = self._equilibrium.energies(step.x, step.load)
         probes = self._probes.displacements()
         fields = self._sampler.sample()
         if fields is None:
             return None
-        shear = fields["shear_angle"]
-        row = HistoryRow(
-            step=step.number,
-            load=step.load,
-            force=reaction.force,
-            moment=reaction.moment,
-            energies=energies,
-            newton_iterations=step.iterations,
-            negative_pivots=step.linearisation.negative_pivots,
-            expected_negative_pivots=step.linearisation.expected_negative_pivots,
-            stable=step.linearisation.stable,
-            shear_min=float(shear.min()),
-            shear_max=float(shear.max()),
-            probes=tuple((float(ux), float(uy)) for ux, uy in probes),
-        )
+        angles = fields["shear_angle"]
+        shear = float(angles.min()), float(angles.max())
+        row = history_row(step, reaction, energies, shear=shear, probes=probes)
         return Observation(row, fields)

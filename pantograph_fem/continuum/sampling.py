@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 import ufl
 from numpy.typing import NDArray
@@ -9,51 +11,63 @@ from numpy.typing import NDArray
 from dolfinx import mesh
 
 from .. import dolfinx_api as api
+from ..physics.kinematics import Expr
 from ..schemes import Discretisation
 
 Array = NDArray[np.float64]
 
-#: A quadratic triangle as four straight ones; nodes 3, 4, 5 lie opposite vertices 0, 1, 2.
-_QUARTERS = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2], [3, 4, 5]])
+#: Quadratic cells as straight ones, by dimension: of an interval, node 2 is the middle; of a
+#: triangle, nodes 3, 4, 5 lie opposite vertices 0, 1, 2.
+_STRAIGHT = {
+    1: np.array([[0, 2], [2, 1]]),
+    2: np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2], [3, 4, 5]]),
+}
 
 
 class FieldSampler:
     """Evaluates a discretisation's displacement and observables.
 
-    The output grid has the nodes of quadratic triangles, joined by straight ones: a quarter of
-    the size, so that curved fields look curved. Fields with jumps between elements are averaged
-    at the nodes, each element weighing as its area.
+    The output grid has the nodes of quadratic cells, joined by straight cells of half the size, so
+    that curved fields look curved. Fields with jumps between elements are averaged at the nodes,
+    each element weighing as its size.
     """
 
-    def __init__(self, discretisation: Discretisation, domain: mesh.Mesh) -> None:
+    def __init__(
+        self,
+        discretisation: Discretisation,
+        domain: mesh.Mesh,
+        observables: Mapping[str, Expr],
+    ) -> None:
         self._domain = domain
         self._comm = domain.comm
-        observables = discretisation.observables()
         self._names = tuple(observables)
+        self._dimension = domain.topology.dim
         values = [discretisation.displacement[0], discretisation.displacement[1]]
         values += observables.values()
-        self._nodes = api.functionspace(domain, api.lagrange(2, (len(values),)))
+        self._nodes = api.functionspace(domain, api.lagrange(2, (len(values),), domain))
         self._expression = api.expression(
             ufl.as_vector(values), api.interpolation_points(self._nodes)
         )
-        self._cells = np.arange(domain.topology.index_map(2).size_local, dtype=np.int32)
+        owned = domain.topology.index_map(self._dimension).size_local
+        self._cells = np.arange(owned, dtype=np.int32)
         self._dofs = api.cell_dofs(self._nodes)[self._cells]
-        self._areas = self._cell_areas()
+        self._sizes = self._cell_sizes()
         self._sum = api.create_vector(self._nodes)
         self._weights = self._accumulate(np.ones((*self._dofs.shape, len(values))))
 
     def grid(self) -> tuple[Array, NDArray[np.int64]] | None:
-        """Points (n, 2) and triangles (m, 3) on rank 0, None elsewhere; a collective call."""
+        """Points (n, 2) and cells (m, 2 or 3) on rank 0, None elsewhere; a collective call."""
         index_map = self._nodes.dofmap.index_map
         numbers = index_map.local_to_global(self._dofs.ravel().astype(np.int32))
         cells = np.asarray(numbers).reshape(self._dofs.shape)
-        triangles = self._comm.gather(cells[:, _QUARTERS].reshape(-1, 3), root=0)
+        straight = cells[:, _STRAIGHT[self._dimension]].reshape(-1, self._dimension + 1)
+        gathered = self._comm.gather(straight, root=0)
         owned = self._nodes.dofmap.index_map.size_local
         points = self._gather(self._nodes.tabulate_dof_coordinates()[:owned, :2])
-        if triangles is None or points is None:
+        if gathered is None or points is None:
             return None
-        merged = np.concatenate(triangles)
-        return points, _anticlockwise(points, merged)
+        merged = np.concatenate(gathered)
+        return points, merged if self._dimension == 1 else _anticlockwise(points, merged)
 
     def sample(self) -> dict[str, Array] | None:
         """Fields of the discretisation's present state on rank 0, None elsewhere; collective."""
@@ -67,11 +81,11 @@ class FieldSampler:
         return fields
 
     def _accumulate(self, values: Array) -> Array:
-        """Area-weighted sums at the owned nodes of values of shape (cells, nodes, components)."""
+        """Sums at the owned nodes of values (cells, nodes, components), weighted by size."""
         components = values.shape[2]
         sums = self._sum.array.reshape(-1, components)
         sums[:] = 0.0
-        np.add.at(sums, self._dofs, values * self._areas[:, None, None])
+        np.add.at(sums, self._dofs, values * self._sizes[:, None, None])
         api.scatter_reverse_add(self._sum)
         return sums[: self._nodes.dofmap.index_map.size_local].copy()
 
@@ -80,11 +94,13 @@ class FieldSampler:
         parts = self._comm.gather(owned, root=0)
         return None if parts is None else np.concatenate(parts)
 
-    def _cell_areas(self) -> Array:
+    def _cell_sizes(self) -> Array:
         vertices = api.cell_vertices(self._domain)[self._cells]
         x = self._domain.geometry.x[vertices][:, :, :2]
-        a, b = x[:, 1] - x[:, 0], x[:, 2] - x[:, 0]
-        return 0.5 * np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+        sides = x[:, 1:] - x[:, :1]
+        if self._dimension == 1:
+            return np.abs(sides[:, 0, 0])
+        return 0.5 * np.abs(np.linalg.det(sides))
 
 
 def _anticlockwise(points: Array, triangles: NDArray[np.int64]) -> NDArray[np.int64]:

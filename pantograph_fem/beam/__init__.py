@@ -1,0 +1,1 @@
+"""``kind = "beam"``: the extensible beam of energy (16)."""

@@ -1,0 +1,85 @@
+"""From a case to the discrete problem: mesh, energy, scheme and ends."""
+
+from __future__ import annotations
+
+import math
+
+from mpi4py import MPI
+
+from dolfinx import fem
+
+from ..case import BeamCase
+from ..case.ends import End
+from ..physics.energy import FibreEnergy, beam_energy
+from ..physics.rigid_motion import RigidMotion
+from ..schemes import Discretisation, Scales, first_gradient, micromorphic
+from .domain import ENDS, Axis, distribute, nodes, piecewise
+from .end import EndConditions, EndSupport, hinge_penalty
+
+#: Components of the displacement that a support holds.
+HELD = {"clamped": (0, 1), "pinned": (0, 1), "roller": (1,), "free": ()}
+
+
+def build_axis(case: BeamCase, comm: MPI.Comm) -> Axis:
+    """Divide the beam into elements and distribute them; a collective call."""
+    assert case.mesh.size is not None  # the case has filled it in
+    length = case.beam.length
+    breaks = [end for end, _ in case.material.pieces(length)]
+    return distribute(comm, nodes(length, case.mesh.size, breaks))
+
+
+def build_energy(case: BeamCase, axis: Axis) -> FibreEnergy:
+    """Energy (16) of the effects that the case names, with coefficients that can change."""
+    material = case.material
+    pieces = material.pieces(axis.length)
+    return beam_energy(
+        constant=lambda value: fem.Constant(axis.mesh, float(value)),
+        stretch=material.stretch,
+        bending=material.bending,
+        foundation=piecewise(axis, pieces) if pieces else None,
+    )
+
+
+def discretise(case: BeamCase, axis: Axis) -> Discretisation:
+    """The scheme applied to the energy; without bending the displacement is all there is."""
+    energy = build_energy(case, axis)
+    options = case.discretisation
+    material = case.material
+    stiffness = max(
+        material.stretch or 0.0,
+        (material.bending or 0.0) / axis.length**2,
+    )
+    scales = Scales(axis.length, stiffness, dimension=1)
+    degrees = {"degree": options.degree, "quadrature_degree": options.quadrature_degree}
+    if not energy.second_gradient:
+        return first_gradient(axis.mesh, energy, scales, **degrees)
+    return micromorphic(
+        axis.mesh, energy, scales, auxiliary_degree=options.auxiliary_degree, **degrees
+    )
+
+
+def build_supports(case: BeamCase, discretisation: Discretisation, axis: Axis) -> list[EndSupport]:
+    """Both ends, in the order of :data:`ENDS`."""
+    penalty = hinge_penalty(case.discretisation.auxiliary_degree)
+    return [
+        EndSupport(
+            end_conditions(getattr(case.ends, name), name, axis.length),
+            discretisation,
+            axis,
+            penalty,
+        )
+        for name in ENDS
+    ]
+
+
+def end_conditions(end: End, name: str, length: float) -> EndConditions:
+    """What a section ``[ends.<name>]`` asks for."""
+    place = (length * ENDS.index(name), 0.0)
+    return EndConditions(
+        name=name,
+        held=HELD[end.support],
+        clamp=end.support == "clamped",
+        motion=RigidMotion(end.translation, math.radians(end.rotation), end.pivot or place),
+        force=end.force,
+        moment=end.moment,
+    )

@@ -1,0 +1,87 @@
+"""A beam as a run sees it: a path to follow, and what there is to observe at each state."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mpi4py import MPI
+
+from ..case import BeamCase
+from ..continuum.equilibrium import ContinuumEquilibrium
+from ..continuum.probes import Probes
+from ..continuum.sampling import FieldSampler
+from ..reporting import TIP_COLUMNS, history_row, tip_columns
+from ..results.fields import FieldGrid
+from ..simulation import Observation
+from ..solve.continuation import Array, Step
+from ..solve.newton import NewtonSettings
+from ..solve.path import NewtonPath
+from ..stopwatch import Stopwatch
+from .build import build_axis, build_supports, discretise
+from .domain import ENDS
+from .observables import beam_observables
+
+_REPORTED = ENDS.index("right")
+
+
+class BeamSimulation:
+    """Implements :class:`pantograph_fem.simulation.Simulation` for ``kind = "beam"``."""
+
+    def __init__(self, case: BeamCase, comm: MPI.Comm, clock: Stopwatch) -> None:
+        """Mesh the beam and compile its forms; a collective call."""
+        with clock("mesh"):
+            axis = build_axis(case, comm)
+        with clock("compile"):
+            discretisation = discretise(case, axis)
+            sampler = FieldSampler(discretisation, axis.mesh, beam_observables(discretisation))
+            supports = build_supports(case, discretisation, axis)
+        self._sampler = sampler
+        self._order: NDArray[np.intp] | None = None
+        self._probes = Probes(discretisation, axis.mesh, case.output.probes)
+        self._equilibrium = ContinuumEquilibrium(discretisation, supports, clock)
+        options = case.continuation
+        self.path = NewtonPath(
+            self._equilibrium, NewtonSettings(options.tolerance, options.max_iterations), clock
+        )
+        self.cells = int(axis.mesh.topology.index_map(1).size_global)
+        self.dofs = {field.name: field.size for field in discretisation.fields}
+        effects = ["energy_foundation"] if "foundation" in discretisation.densities else []
+        self.extra_columns = (*effects, *TIP_COLUMNS)
+
+    @property
+    def start(self) -> Array:
+        """The state of rest."""
+        return self._equilibrium.undeformed()
+
+    def grid(self) -> FieldGrid | None:
+        """Nodes along the axis on rank 0, None elsewhere; a collective call."""
+        grid = self._sampler.grid()
+        if grid is None:
+            return None
+        points, _ = grid
+        self._order = np.argsort(points[:, 0])
+        numbers = np.arange(len(points))
+        return FieldGrid(points[self._order], np.column_stack([numbers[:-1], numbers[1:]]))
+
+    def observe(self, step: Step) -> Observation | None:
+        """Numbers and fields of a state on rank 0, None elsewhere; a collective call."""
+        reaction = self._equilibrium.reactions(step.x, step.load)[_REPORTED]
+        energies = self._equilibrium.energies(step.x, step.load)
+        probes = self._probes.displacements()
+        sampled = self._sampler.sample()
+        if sampled is None:
+            return None
+        if self._order is None:
+            self.grid()
+        fields = {name: values[self._order] for name, values in sampled.items()}
+        # The beam turns continuously along its axis, by more than half a turn if it must.
+        fields["angle"] = np.unwrap(fields["angle"])
+        row = history_row(
+            step,
+            reaction,
+            energies,
+            extra=tip_columns(fields["displacement"][-1], fields["angle"][-1]),
+            probes=probes,
+        )
+        return Observation(row, fields)

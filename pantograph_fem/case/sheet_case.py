@@ -1,0 +1,60 @@
+"""``kind = "sheet"``: the continuum of energy (31) between two grips."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Literal
+
+from pydantic import Field, ValidationInfo, field_validator
+
+from .continuation import Continuation
+from .discretisation import Discretisation
+from .grips import Grips
+from .material import Material
+from .mesh import Mesh
+from .model import Case
+from .output import Output
+from .sheet import Sheet
+
+
+class SheetCase(Case):
+    """A pantographic sheet between two grips; its attributes are the sections of the file."""
+
+    kind: Literal["sheet"] = "sheet"
+    sheet: Sheet
+    material: Material
+    grips: Grips = Grips()
+    # validated although a default, as its sizes depend on the sheet and the grips
+    mesh: Mesh = Field(default_factory=Mesh, validate_default=True)
+    discretisation: Discretisation = Field(default_factory=Discretisation)
+    continuation: Continuation = Continuation()
+    output: Output = Output()
+
+    @property
+    def input_files(self) -> tuple[Path, ...]:
+        """The mesh, where it is read from a file."""
+        return () if self.mesh.file is None else (self.mesh.file,)
+
+    # In each of these, a section that is absent from info.data is itself wrong.
+
+    @field_validator("grips")
+    @classmethod
+    def _clamps_need_bending(cls, grips: Grips, info: ValidationInfo) -> Grips:
+        material = info.data.get("material")
+        if material is not None:
+            grips.check_clamps(has_bending=material.bending is not None)
+        return grips
+
+    @field_validator("mesh")
+    @classmethod
+    def _default_sizes(cls, mesh: Mesh, info: ValidationInfo) -> Mesh:
+        sheet, grips = info.data.get("sheet"), info.data.get("grips")
+        return mesh if sheet is None or grips is None else mesh.with_defaults(sheet, grips)
+
+    @field_validator("output")
+    @classmethod
+    def _probes_in_the_sheet(cls, output: Output, info: ValidationInfo) -> Output:
+        sheet, mesh = info.data.get("sheet"), info.data.get("mesh")
+        if sheet is not None and mesh is not None and mesh.file is None:
+            output.check_probes(sheet)
+        return output

@@ -1,0 +1,167 @@
+"""Equilibrium of a continuum between supports, as residual, tangent and rate of one state."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import ufl
+from numpy.typing import NDArray
+
+from mpi4py import MPI
+from petsc4py import PETSc
+
+from dolfinx import fem
+
+from .. import dolfinx_api as api
+from ..physics.reaction import Reaction
+from ..schemes import Discretisation
+from ..stopwatch import Stopwatch
+from .support import Support
+
+Array = NDArray[np.float64]
+
+
+class ContinuumEquilibrium:
+    """The discrete problem: compiled forms and held dofs.
+
+    Implements :class:`pantograph_fem.solve.problem.Problem`.
+    """
+
+    def __init__(
+        self,
+        discretisation: Discretisation,
+        supports: Sequence[Support],
+        clock: Stopwatch | None = None,
+    ) -> None:
+        self.discretisation = discretisation
+        self.supports = supports
+        self._clock = clock or Stopwatch()
+        self._state = discretisation.state
+        space = self._state.function_space
+        self._owned = api.owned_size(space)
+        self._comm = space.mesh.comm
+        with self._clock("compile"):
+            self._compile()
+        dofs = np.concatenate([support.dofs for support in supports])
+        self._owned_dofs = np.unique(dofs[dofs < self._owned])
+        self._data = fem.Function(space)
+        blocks = dofs if space.dofmap.index_map_bs == 1 else dofs[::2] // 2
+        self._bcs = [fem.dirichletbc(self._data, np.unique(blocks).astype(np.int32))]
+        self._vector = api.create_vector(space)
+
+    def _compile(self) -> None:
+        d = self.discretisation
+        functional = d.functional
+        energies = {name: density * d.measure for name, density in d.densities.items()}
+        for support in self.supports:
+            for name, term in support.stored.items():
+                functional += term
+                energies[name] += term
+            if support.potential is not None:
+                functional += support.potential
+        residual = ufl.derivative(functional, self._state)
+        self._residual = api.form(residual)
+        self._tangent = api.form(ufl.derivative(residual, self._state))
+        self._energies = {name: api.form(energy) for name, energy in energies.items()}
+        pulls = [support.pull for support in self.supports if support.pull is not None]
+        self._pull = api.form(ufl.derivative(sum(pulls), self._state)) if pulls else None
+
+    @property
+    def typical_sizes(self) -> Array:
+        """Typical size of each owned dof."""
+        return self.discretisation.typical_sizes()[: self._owned]
+
+    @property
+    def typical_energy(self) -> float:
+        """Typical energy, J."""
+        return self.discretisation.scales.energy
+
+    @property
+    def expected_negative_pivots(self) -> int:
+        """One per multiplier dof."""
+        return self.discretisation.multiplier_dofs
+
+    def matrix(self) -> PETSc.Mat:
+        """An empty matrix for the tangent."""
+        return api.create_matrix(self._tangent)
+
+    def undeformed(self) -> Array:
+        """The state of rest."""
+        return np.zeros(self._owned)
+
+    def impose(self, x: Array, load: float) -> Array:
+        """A copy of x with the supports where they are at the load factor."""
+        imposed = x.copy()
+        for support in self.supports:
+            mine = support.dofs < self._owned
+            imposed[support.dofs[mine]] = support.values(load)[mine]
+        return imposed
+
+    def residual(self, x: Array, load: float, r: PETSc.Vec) -> None:
+        """Out-of-balance forces; zero at the held dofs, whose values x must already have."""
+        with self._clock("assemble"):
+            self.load_state(x, load)
+            api.assemble_vector(self._vector, self._residual)
+            r.array[:] = self._vector.array[: self._owned]
+            r.array[self._owned_dofs] = 0.0
+
+    def tangent(self, x: Array, load: float, A: PETSc.Mat) -> None:
+        """Derivative of the residual; rows and columns of held dofs are the identity's."""
+        with self._clock("assemble"):
+            self.load_state(x, load)
+            api.assemble_matrix(A, self._tangent, self._bcs)
+
+    def load_rate(self, x: Array, load: float) -> Array:
+        """Right side whose solution with the tangent is dx/dload along the path."""
+        with self._clock("assemble"):
+            self.load_state(x, load)
+            self._data.x.array[:] = 0.0
+            for support in self.supports:
+                self._data.x.array[support.dofs] = support.rates(load)
+            if self._pull is None:
+                self._vector.array[:] = 0.0
+            else:
+                api.assemble_vector(self._vector, self._pull)
+                self._vector.array[self._owned :] = 0.0  # the lifting adds its ghosts once more
+            api.lift(self._vector, self._tangent, self._bcs)
+            rate = self._vector.array[: self._owned].copy()
+            rate[self._owned_dofs] = self._data.x.array[self._owned_dofs]
+        return rate
+
+    def energies(self, x: Array, load: float) -> dict[str, float]:
+        """Stored energy of each effect, J."""
+        self.load_state(x, load)
+        return {
+            name: self._comm.allreduce(fem.assemble_scalar(form), MPI.SUM)
+            for name, form in self._energies.items()
+        }
+
+    def reactions(self, x: Array, load: float) -> list[Reaction]:
+        """What each support exerts: the work of the residual on its virtual rigid motions."""
+        self.load_state(x, load)
+        api.assemble_vector(self._vector, self._residual)
+        return [
+            Reaction(
+                (
+                    self._work(support, support.virtual_translation(0)),
+                    self._work(support, support.virtual_translation(1)),
+                ),
+                self._work(support, support.virtual_rotation(load)),
+            )
+            + support.exerted()
+            for support in self.supports
+        ]
+
+    def load_state(self, x: Array, load: float) -> None:
+        """Put x into the state function, ghosts included, and move the supports."""
+        self._state.x.array[: self._owned] = x
+        self._state.x.scatter_forward()
+        for support in self.supports:
+            support.move(load)
+
+    def _work(self, support: Support, virtual: Array) -> float:
+        mine = support.dofs < self._owned
+        return self._comm.allreduce(
+            float(self._vector.array[support.dofs[mine]] @ virtual[mine]), MPI.SUM
+        )

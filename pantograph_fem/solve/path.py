@@ -1,0 +1,46 @@
+"""An equilibrium problem as continuation sees it: it corrects a guess and linearises a state."""
+
+from __future__ import annotations
+
+from ..stopwatch import Stopwatch
+from .continuation import Array, Correction, Linearisation
+from .newton import NewtonSettings, NewtonSolver
+from .problem import Problem
+
+
+class NewtonPath:
+    """Implements :class:`pantograph_fem.solve.continuation.Equilibrium` by Newton's method."""
+
+    def __init__(self, problem: Problem, settings: NewtonSettings, clock: Stopwatch) -> None:
+        self._problem = problem
+        self._clock = clock
+        self._load = 0.0
+        self._newton = NewtonSolver(
+            lambda x, r: problem.residual(x, self._load, r),
+            lambda x, A: problem.tangent(x, self._load, A),
+            problem.matrix(),
+            problem.typical_sizes,
+            problem.typical_energy,
+            settings,
+        )
+
+    def correct(self, guess: Array, load: float) -> Correction:
+        """Newton's method from the guess, with the held unknowns put in place."""
+        self._load = load
+        with self._clock("solve"):
+            result = self._newton.solve(self._problem.impose(guess, load))
+        return Correction(load, result.x, result.converged, result.iterations, result.reason)
+
+    def linearise(self, x: Array, load: float) -> Linearisation:
+        """Factorise the tangent at an accepted state: its inertia, and the path's direction."""
+        self._load = load
+        with self._clock("solve"):
+            factor = self._newton.factorise(x)
+            rate = self._newton.back_substitute(self._problem.load_rate(x, load))
+            inertia = factor.inertia
+        return Linearisation(
+            rate=rate,
+            negative_pivots=inertia.negative,
+            expected_negative_pivots=self._problem.expected_negative_pivots,
+            zero_pivots=inertia.zero,
+        )

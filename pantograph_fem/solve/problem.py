@@ -1,0 +1,47 @@
+"""What the solver needs of a discrete equilibrium problem, whatever is in equilibrium."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from petsc4py import PETSc
+
+Array = NDArray[np.float64]
+
+
+class Problem(Protocol):
+    """A potential with a load factor, of which an equilibrium is a stationary point.
+
+    States are arrays of the unknowns that this process owns, in SI units. Some unknowns are held:
+    the load factor prescribes them. Every method is collective.
+    """
+
+    @property
+    def typical_sizes(self) -> Array:
+        """Typical size of each owned unknown."""
+
+    @property
+    def typical_energy(self) -> float:
+        """Typical energy, J."""
+
+    @property
+    def expected_negative_pivots(self) -> int:
+        """Negative eigenvalues of the tangent at a stable state."""
+
+    def matrix(self) -> PETSc.Mat:
+        """An empty matrix for the tangent."""
+
+    def impose(self, x: Array, load: float) -> Array:
+        """A copy of x with the held unknowns where they are at the load factor."""
+
+    def residual(self, x: Array, load: float, r: PETSc.Vec) -> None:
+        """Gradient of the potential; zero at the held unknowns, whose values x must have."""
+
+    def tangent(self, x: Array, load: float, A: PETSc.Mat) -> None:
+        """Derivative of the residual; rows and columns of held unknowns are the identity's."""
+
+    def load_rate(self, x: Array, load: float) -> Array:
+        """Right side whose solution with the tangent is dx/dload along the path."""
