@@ -20,6 +20,7 @@ COPY pyproject.toml README.md /opt/pantograph_fem/
 COPY pantograph_fem /opt/pantograph_fem/pantograph_fem
 COPY cases /opt/pantograph_fem/cases
 COPY meshes /opt/pantograph_fem/meshes
+COPY studies /opt/pantograph_fem/studies
 RUN printf '#!/bin/sh\nexec python3 -m pantograph_fem "$@"\n' > /usr/local/bin/pantograph \
  && chmod 755 /usr/local/bin/pantograph
 

@@ -1,10 +1,11 @@
 # make run    installs what is missing and runs the bias extension test of Fig. 7
 # make test   installs what is missing, checks the code and runs the tests
 # make lint   style and types alone
+# make figures   draws the figures of README and docs anew, in a quarter of an hour
 
 SHELL := /bin/bash
 .DELETE_ON_ERROR:
-.PHONY: run test lint packages clean
+.PHONY: run test lint figures packages clean
 
 PYTHON := .venv/bin/python
 PACKAGES := $(shell sed 's/\#.*//' apt-packages.txt)
@@ -23,6 +24,19 @@ lint: .venv/installed
 	$(PYTHON) -m ruff check .
 	$(PYTHON) -m ruff format --check .
 	$(PYTHON) -m mypy
+
+figures: .venv/installed
+	.venv/bin/pantograph run cases/a_bias_extension.toml --quiet
+	.venv/bin/pantograph run cases/beam_arc.toml --quiet
+	for study in chain_to_beam lattice_to_sheet lattice_to_sheet_resolved inextensible_limit; do \
+		.venv/bin/pantograph compare studies/$$study.toml --quiet || exit; done
+	cd results && cp a_bias_extension/figures/{shear_angle_100,energy_density_100,force_displacement}.png \
+		../docs/figures
+	cp results/beam_arc/figures/shapes.png docs/figures/beam_arc_shapes.png
+	for study in chain_to_beam lattice_to_sheet_resolved; do \
+		cp results/$$study/convergence.png docs/figures/$${study}_convergence.png; done
+	for study in lattice_to_sheet inextensible_limit; do \
+		cp results/$$study/curves.png docs/figures/$${study}_curves.png; done
 
 # Asks dpkg rather than a file: a package may have been removed since.
 packages:

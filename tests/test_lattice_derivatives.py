@@ -154,7 +154,9 @@ def test_a_derivative_that_is_wrong_by_one_per_cent_is_found(name, module, build
 def test_the_tangent_is_symmetric_and_the_identity_at_held_unknowns(problem):
     equilibrium, size = problem
     x, _ = some_state(equilibrium, size, 0.7)
-    A = tangent(equilibrium, x, 0.7).convert("dense").getDenseArray()
+    # the array is that of the matrix, and gone with it
+    dense = tangent(equilibrium, x, 0.7).convert("dense")
+    A = dense.getDenseArray()
     np.testing.assert_allclose(A, A.T, atol=1e-12 * np.abs(A).max())
     held = equilibrium.net.held.ravel()
     np.testing.assert_array_equal(A[held], np.eye(len(A))[held])

@@ -111,7 +111,8 @@ def test_a_compressed_column_buckles_at_the_load_of_the_hencky_chain():
         assert np.abs(r.array).max() < 1e-9 * critical
         A = equilibrium.matrix()
         equilibrium.tangent(x.ravel(), critical * factor, A)
-        smallest = np.linalg.eigvalsh(A.convert("dense").getDenseArray())[0]
+        dense = A.convert("dense")  # the array is that of the matrix, and gone with it
+        smallest = np.linalg.eigvalsh(dense.getDenseArray())[0]
         assert (smallest > 0) == stable
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 from mpi4py import MPI
 
 from dolfinx import fem
@@ -79,7 +77,7 @@ def end_conditions(end: End, name: str, length: float) -> EndConditions:
         name=name,
         held=HELD[end.support],
         clamp=end.support == "clamped",
-        motion=RigidMotion(end.translation, math.radians(end.rotation), end.pivot or place),
+        motion=RigidMotion.from_degrees(end.translation, end.rotation, end.pivot or place),
         force=end.force,
         moment=end.moment,
     )

@@ -7,14 +7,11 @@ from typing import Literal
 from pydantic import Field, ValidationInfo, field_validator
 
 from .continuation import Continuation
-from .grips import Grips
+from .gripped_case import GrippedCase
 from .lattice_spacing import fitted_spacing
-from .material import Material
-from .model import Case
 from .output import Output
 from .part import Part
 from .problem import Problem, not_allowed, problem_error
-from .sheet import Sheet
 
 
 class Lattice(Part):
@@ -42,29 +39,18 @@ class Lattice(Part):
 _FEWEST = 2
 
 
-class LatticeCase(Case):
+class LatticeCase(GrippedCase):
     """A lattice of springs with the constants (30); its attributes are the sections of the file.
 
     Sheet, material and grips are those of the continuum that it stands for.
     """
 
     kind: Literal["lattice"] = "lattice"
-    sheet: Sheet
-    material: Material
-    grips: Grips = Grips()
     lattice: Lattice
     continuation: Continuation = Continuation()
     output: Output = Output()
 
     # In each of these, a section that is absent from info.data is itself wrong.
-
-    @field_validator("grips")
-    @classmethod
-    def _clamps_need_bending(cls, grips: Grips, info: ValidationInfo) -> Grips:
-        material = info.data.get("material")
-        if material is not None:
-            grips.check_clamps(has_bending=material.bending is not None)
-        return grips
 
     @field_validator("lattice")
     @classmethod

@@ -9,21 +9,15 @@ from pydantic import Field, ValidationInfo, field_validator
 
 from .continuation import Continuation
 from .discretisation import Discretisation
-from .grips import Grips
-from .material import Material
+from .gripped_case import GrippedCase
 from .mesh import Mesh
-from .model import Case
 from .output import Output
-from .sheet import Sheet
 
 
-class SheetCase(Case):
+class SheetCase(GrippedCase):
     """A pantographic sheet between two grips; its attributes are the sections of the file."""
 
     kind: Literal["sheet"] = "sheet"
-    sheet: Sheet
-    material: Material
-    grips: Grips = Grips()
     # validated although a default, as its sizes depend on the sheet and the grips
     mesh: Mesh = Field(default_factory=Mesh, validate_default=True)
     discretisation: Discretisation = Field(default_factory=Discretisation)
@@ -36,14 +30,6 @@ class SheetCase(Case):
         return () if self.mesh.file is None else (self.mesh.file,)
 
     # In each of these, a section that is absent from info.data is itself wrong.
-
-    @field_validator("grips")
-    @classmethod
-    def _clamps_need_bending(cls, grips: Grips, info: ValidationInfo) -> Grips:
-        material = info.data.get("material")
-        if material is not None:
-            grips.check_clamps(has_bending=material.bending is not None)
-        return grips
 
     @field_validator("mesh")
     @classmethod

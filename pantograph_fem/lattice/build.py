@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..case import ChainCase, LatticeCase
-from ..case.ends import End
 from ..case.grips import Grip
 from ..physics.rigid_motion import RigidMotion
 from .chain import chain, winkler
@@ -73,7 +71,7 @@ def build_lattice(case: LatticeCase) -> NetProblem:
 def _grip_motion(grip: Grip, width: float, y: float) -> RigidMotion:
     pivots = {"left": (0.0, y), "right": (width, y), "centre": (0.5 * width, y)}
     pivot = pivots[grip.pivot] if isinstance(grip.pivot, str) else grip.pivot
-    return RigidMotion(grip.translation, math.radians(grip.rotation), pivot)
+    return RigidMotion.from_degrees(grip.translation, grip.rotation, pivot)
 
 
 def build_chain(case: ChainCase) -> NetProblem:
@@ -94,13 +92,11 @@ def build_chain(case: ChainCase) -> NetProblem:
     for name, end in ends.items():
         x, node, link = places[name]
         if name in net.ends:
-            motions[name] = _end_motion(end, x)
+            motions[name] = RigidMotion.from_degrees(
+                end.translation, end.rotation, end.pivot or (x, 0.0)
+            )
         if end.moment or any(end.force):
             loads.append(EndLoad(name, node, link, end.force, end.moment))
     parts = np.full(net.size, spacing)
     parts[[0, -1]] *= 0.5
     return NetProblem(net, motions, parts, loads)
-
-
-def _end_motion(end: End, x: float) -> RigidMotion:
-    return RigidMotion(end.translation, math.radians(end.rotation), end.pivot or (x, 0.0))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,6 +33,13 @@ class RigidMotion:
     translation: tuple[float, float] = (0.0, 0.0)
     angle: float = 0.0
     pivot: tuple[float, float] = (0.0, 0.0)
+
+    @classmethod
+    def from_degrees(
+        cls, translation: tuple[float, float], rotation: float, pivot: tuple[float, float]
+    ) -> RigidMotion:
+        """The motion of a case file, whose rotation is in degrees."""
+        return cls(translation, math.radians(rotation), pivot)
 
     def rotation(self, load: float) -> Array:
         """R at the load factor, shape (2, 2)."""

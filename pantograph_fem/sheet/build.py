@@ -88,14 +88,10 @@ def _grip(grip: GripCase, domain: Domain, name: str) -> Grip:
     centre = (left + right) / 2
     pivots = {"left": left, "right": right, "centre": centre}
     pivot = pivots[grip.pivot] if isinstance(grip.pivot, str) else grip.pivot
-    motion = RigidMotion(
-        translation=(float(grip.translation[0]), float(grip.translation[1])),
-        angle=math.radians(grip.rotation),
-        pivot=(float(pivot[0]), float(pivot[1])),
-    )
+    place = float(pivot[0]), float(pivot[1])
     return Grip(
         facets=domain.facets[name],
-        motion=motion,
+        motion=RigidMotion.from_degrees(grip.translation, grip.rotation, place),
         clamp=grip.hold == "clamp",
         centre=(float(centre[0]), float(centre[1])),
     )
