@@ -70,15 +70,19 @@ def atan2(y: Any, x: Any) -> Any:
 def create_simplex_mesh(
     comm: MPI.Comm, dimension: int, points: NDArray[np.float64], cells: NDArray[np.int64]
 ) -> mesh.Mesh:
-    """Distribute a mesh of straight intervals (1) or triangles (2); only rank 0's arrays count."""
+    """Distribute a mesh of straight intervals (1) or triangles (2); only rank 0's arrays count.
+
+    Each process also has the cells across the facets of its own, for integrals over facets.
+    """
     if comm.rank != 0:
         points, cells = np.empty((0, dimension)), np.empty((0, dimension + 1), dtype=np.int64)
     cells = np.ascontiguousarray(cells, dtype=np.int64)
     domain = ufl.Mesh(_lagrange(1, (dimension,), _CELLS[dimension]))
     if _OLD:
         return mesh.create_mesh(comm, cells, points, domain)
+    neighbours = mesh.create_cell_partitioner(mesh.GhostMode.shared_facet)
     # By name: the order of the two changed in 0.10.
-    return mesh.create_mesh(comm, cells, x=points, e=domain)
+    return mesh.create_mesh(comm, cells, x=points, e=domain, partitioner=neighbours)
 
 
 def tagged_facets(

@@ -74,9 +74,10 @@ def case_file(tmp_path: Path) -> Path:
          "0.02 is not allowed; it must be at most mesh.size (0.00618182)"),
         ("mesh", "grip_size", 0.02,
          "0.02 is not allowed; it must be at most mesh.size (0.00618182)"),
-        ("discretisation", "scheme", "hinge",
-         '"hinge" is not allowed; it must be "micromorphic"'),
-        ("discretisation", "degree", 4, "4 is not allowed; it must be 2 or 3"),
+        ("discretisation", "scheme", "argyris",
+         '"argyris" is not allowed; it must be "micromorphic" or "hinge"'),
+        ("discretisation", "degree", 5, "5 is not allowed; it must be 2, 3 or 4"),
+        ("discretisation", "auxiliary_degree", 0, "0 is not allowed; it must be from 1 to 4"),
         ("discretisation", "quadrature_degree", 21,
          "21 is not allowed; it must be from 2 to 20"),
         ("discretisation", "quadrature_degree", 4.0,
@@ -112,6 +113,13 @@ def case_file(tmp_path: Path) -> Path:
 def test_a_value_that_is_not_allowed(section: str, key: str, value: Any, sentence: str) -> None:
     valid = {"sheet": SHEET, "material": MATERIAL}.get(section, {})
     assert problems(**{section: valid | {key: value}}) == [f"{section}.{key}: {sentence}"]
+
+
+def test_the_hinge_scheme_has_no_auxiliary_degree() -> None:
+    assert problems(discretisation={"scheme": "hinge", "auxiliary_degree": 2}) == [
+        "discretisation.auxiliary_degree: not allowed in the hinge scheme, which has no auxiliary "
+        "gradient"
+    ]
 
 
 def test_auxiliary_degree_is_below_the_degree() -> None:

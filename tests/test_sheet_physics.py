@@ -52,10 +52,11 @@ def test_an_extensible_sheet_stores_less_than_a_hardly_extensible_one_all_along(
     assert all(soft[load] < stiff[load] for load in common)
 
 
-def test_a_clamp_is_one_constraint_more(solve):
+@pytest.mark.parametrize("scheme", ["micromorphic", "hinge"])
+def test_a_clamp_is_one_constraint_more(solve, scheme):
     """On the same mesh its energy is no lower; how the grips hold does not touch the dofs."""
-    mesh = {"grip_size": 0.01}
-    free, clamped = (solve(grips=held(hold), mesh=mesh) for hold in ("position", "clamp"))
+    changes = {"mesh": {"grip_size": 0.01}, "discretisation": {"scheme": scheme}}
+    free, clamped = (solve(grips=held(hold), **changes) for hold in ("position", "clamp"))
     assert clamped.last.energy > free.last.energy
     assert clamped.last.force[1] > free.last.force[1]
     assert clamped.summary["dofs"] == free.summary["dofs"]
@@ -151,9 +152,19 @@ def test_linear_pivots_answer_in_proportion_at_small_loads(solve):
 
 
 @pytest.mark.parametrize(
-    ("degree", "size", "corner_size"), [(3, 0.02, 0.01), (3, 0.01, 0.0005), (2, 0.01, 0.0005)]
+    ("scheme", "degree", "size", "corner_size"),
+    [
+        ("micromorphic", 3, 0.02, 0.01),
+        ("micromorphic", 3, 0.01, 0.0005),
+        ("micromorphic", 2, 0.01, 0.0005),
+        ("hinge", 2, 0.02, 0.01),
+        ("hinge", 2, 0.01, 0.0005),
+        ("hinge", 3, 0.01, 0.0005),
+    ],
 )
-def test_upright_fibres_lose_stability_at_their_buckling_load(solve, degree, size, corner_size):
+def test_upright_fibres_lose_stability_at_their_buckling_load(
+    solve, scheme, degree, size, corner_size
+):
     r"""Fibres along x and y, compressed along y by the force N per width.
 
     The sway u_x(y) with hinged ends bends the upright fibres and turns them against the others,
@@ -166,7 +177,7 @@ def test_upright_fibres_lose_stability_at_their_buckling_load(solve, degree, siz
     sheet = solve(
         sheet={"fibre_angle": 0.0},
         material={"bending": K_b, "shear_exponent": None},
-        discretisation={"degree": degree},
+        discretisation={"scheme": scheme, "degree": degree},
         mesh={"size": size, "corner_size": corner_size},
         grips={"top": {"translation": [0.0, -1.03 * critical]}},
         continuation={"stops": [0.97 / 1.03, 1.0]},

@@ -10,9 +10,9 @@ from ..case import BeamCase
 from ..case.ends import End
 from ..physics.energy import FibreEnergy, beam_energy
 from ..physics.rigid_motion import RigidMotion
-from ..schemes import Discretisation, Scales, first_gradient, micromorphic
+from ..schemes import Discretisation, Scales, discretise
 from .domain import ENDS, Axis, distribute, nodes, piecewise
-from .end import EndConditions, EndSupport, hinge_penalty
+from .end import EndConditions, EndSupport
 
 #: Components of the displacement that a support holds.
 HELD = {"clamped": (0, 1), "pinned": (0, 1), "roller": (1,), "free": ()}
@@ -38,33 +38,26 @@ def build_energy(case: BeamCase, axis: Axis) -> FibreEnergy:
     )
 
 
-def discretise(case: BeamCase, axis: Axis) -> Discretisation:
-    """The scheme applied to the energy; without bending the displacement is all there is."""
-    energy = build_energy(case, axis)
-    options = case.discretisation
-    material = case.material
-    stiffness = max(
-        material.stretch or 0.0,
-        (material.bending or 0.0) / axis.length**2,
-    )
-    scales = Scales(axis.length, stiffness, dimension=1)
-    degrees = {"degree": options.degree, "quadrature_degree": options.quadrature_degree}
-    if not energy.second_gradient:
-        return first_gradient(axis.mesh, energy, scales, **degrees)
-    return micromorphic(
-        axis.mesh, energy, scales, auxiliary_degree=options.auxiliary_degree, **degrees
+def discretise_beam(case: BeamCase, axis: Axis) -> Discretisation:
+    """Energy (16) by the scheme of the case."""
+    options, material = case.discretisation, case.material
+    stiffness = max(material.stretch or 0.0, (material.bending or 0.0) / axis.length**2)
+    return discretise(
+        axis.mesh,
+        build_energy(case, axis),
+        Scales(axis.length, stiffness, dimension=1),
+        scheme=options.scheme,
+        degree=options.degree,
+        auxiliary_degree=options.auxiliary_degree,
+        quadrature_degree=options.quadrature_degree,
     )
 
 
 def build_supports(case: BeamCase, discretisation: Discretisation, axis: Axis) -> list[EndSupport]:
     """Both ends, in the order of :data:`ENDS`."""
-    penalty = hinge_penalty(case.discretisation.auxiliary_degree)
     return [
         EndSupport(
-            end_conditions(getattr(case.ends, name), name, axis.length),
-            discretisation,
-            axis,
-            penalty,
+            end_conditions(getattr(case.ends, name), name, axis.length), discretisation, axis
         )
         for name in ENDS
     ]

@@ -1,14 +1,4 @@
-r"""Ends of a beam: held points, held directions and dead loads.
-
-A clamp holds the direction φ of the beam but not its stretch, which no linear condition on the
-gradient does. So it acts as a hinge whose turn J = φ - θ against the imposed direction θ is closed
-by its own moment (Nitsche's method). With the moment m = K_b κ and the outward sign n = ±1 it adds
-
-.. math:: -m\,n\,J + \frac{\eta K_b}{2h}\,J^2
-
-to the stored energy, which vanishes with the mesh size. The clamp's moment is
-:math:`\partial\Pi/\partial\theta = m n - \eta K_b J/h`.
-"""
+"""Ends of a beam: held points, held directions and dead loads."""
 
 from __future__ import annotations
 
@@ -18,12 +8,10 @@ import numpy as np
 import ufl
 from numpy.typing import NDArray
 
-from mpi4py import MPI
-
 from dolfinx import fem
 
-from .. import dolfinx_api as api
-from ..physics.kinematics import Expr, cross, direction_angle, fibre
+from ..continuum.held_directions import HeldDirections
+from ..physics.kinematics import Expr, direction_angle, fibre
 from ..physics.reaction import Reaction
 from ..physics.rigid_motion import RigidMotion
 from ..schemes import Discretisation
@@ -58,15 +46,6 @@ class EndConditions:
     moment: float = 0.0
 
 
-def hinge_penalty(auxiliary_degree: int) -> float:
-    """η: twice what the trace inequality asks for.
-
-    κ being of degree p - 1 on an element, κ² at its end is at most p²/h times its integral; so the
-    hinge and the bending of the element are positive together for η > p².
-    """
-    return 2.0 * auxiliary_degree**2
-
-
 class EndSupport:
     """One end. Implements :class:`pantograph_fem.continuum.support.Support`."""
 
@@ -75,10 +54,8 @@ class EndSupport:
         conditions: EndConditions,
         discretisation: Discretisation,
         axis: Axis,
-        penalty: float,
     ) -> None:
         self._conditions = conditions
-        self._comm = axis.mesh.comm
         tag = ENDS.index(conditions.name)
         field = discretisation.field("displacement")
         assert field is not None  # every scheme has one
@@ -91,30 +68,15 @@ class EndSupport:
 
         measure = ufl.Measure("ds", domain=axis.mesh, subdomain_data=axis.tags)(tag)
         self._load = fem.Constant(axis.mesh, 0.0)
-        self._direction = fem.Constant(axis.mesh, np.array([1.0, 0.0]))
         self.stored: dict[str, ufl.Form] = {}
         self.potential: ufl.Form | None = None
         self.pull: ufl.Form | None = None
-        self._moment: fem.Form | None = None
+        self._direction: HeldDirections | None = None
         if conditions.clamp:
-            self._clamp(discretisation, axis, measure, penalty)
+            self._direction = HeldDirections(discretisation, axis.tags, tag, conditions.motion)
+            self.stored["bending"] = self._direction.stored
+            self.pull = self._direction.pull
         self._add_dead_loads(discretisation, axis, measure)
-
-    def _clamp(
-        self, discretisation: Discretisation, axis: Axis, ds: ufl.Measure, penalty: float
-    ) -> None:
-        energy = discretisation.energy
-        ((_, K_b),) = energy.bending
-        (kappa,) = discretisation.curvatures
-        a, d = fibre(discretisation.bent_gradient, energy.directions[0]), self._direction
-        J = api.atan2(cross(d, a), ufl.dot(d, a))
-        n, h = ufl.FacetNormal(axis.mesh)[0], api.cell_size(axis.mesh)
-        moment, stiffness = K_b * kappa * n, penalty * K_b / h
-        self.stored["bending"] = (-moment * J + 0.5 * stiffness * J**2) * ds
-        exerted = moment - stiffness * J
-        self._moment = api.form(exerted * ds)
-        if angle := self._conditions.motion.angle:
-            self.pull = -fem.Constant(axis.mesh, angle) * exerted * ds
 
     def _add_dead_loads(self, discretisation: Discretisation, axis: Axis, ds: ufl.Measure) -> None:
         work: Expr | None = None
@@ -123,8 +85,8 @@ class EndSupport:
             work = ufl.dot(force, discretisation.displacement)
         if self._conditions.moment:
             # Only its variation counts, so it does not matter that the angle jumps at ±π.
-            (a,) = discretisation.energy.directions
-            angle = direction_angle(fibre(discretisation.bent_gradient, a))
+            (D,) = discretisation.energy.directions
+            angle = direction_angle(fibre(discretisation.bent_gradient, D))
             turning = fem.Constant(axis.mesh, self._conditions.moment) * angle
             work = turning if work is None else work + turning
         if work is not None:
@@ -150,12 +112,13 @@ class EndSupport:
     def move(self, load: float) -> None:
         """Turn the clamp and raise the dead loads."""
         self._load.value = load
-        self._direction.value[:] = self._conditions.motion.rotation(load)[:, 0]
+        if self._direction is not None:
+            self._direction.move(load)
 
     def exerted(self) -> Reaction:
         """Dead loads and the moment of the clamp; a collective call."""
         load = float(self._load.value)
         force, moment = self._conditions.force, load * self._conditions.moment
-        if self._moment is not None:
-            moment += self._comm.allreduce(fem.assemble_scalar(self._moment), MPI.SUM)
+        if self._direction is not None:
+            moment += self._direction.moment()
         return Reaction((load * force[0], load * force[1]), moment)

@@ -18,7 +18,7 @@ from ..solve.continuation import Array, Step
 from ..solve.newton import NewtonSettings
 from ..solve.path import NewtonPath
 from ..stopwatch import Stopwatch
-from .build import build_axis, build_supports, discretise
+from .build import build_axis, build_supports, discretise_beam
 from .domain import ENDS
 from .observables import beam_observables
 
@@ -33,7 +33,7 @@ class BeamSimulation:
         with clock("mesh"):
             axis = build_axis(case, comm)
         with clock("compile"):
-            discretisation = discretise(case, axis)
+            discretisation = discretise_beam(case, axis)
             sampler = FieldSampler(discretisation, axis.mesh, beam_observables(discretisation))
             supports = build_supports(case, discretisation, axis)
         self._sampler = sampler

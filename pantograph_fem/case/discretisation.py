@@ -10,8 +10,8 @@ from .part import Part
 from .problem import Problem, not_allowed, problem_error
 
 
-def _default_auxiliary_degree(fields: dict[str, Any]) -> int:
-    return int(fields["degree"]) - 1
+def _default_auxiliary_degree(fields: dict[str, Any]) -> int | None:
+    return int(fields["degree"]) - 1 if fields["scheme"] == "micromorphic" else None
 
 
 def _default_sheet_quadrature_degree(fields: dict[str, Any]) -> int:
@@ -30,25 +30,30 @@ class BeamDiscretisation(Part):
     Attributes
     ----------
     scheme
-        How the second derivatives are treated.
+        How the second derivatives are treated: "micromorphic", the paper's auxiliary gradient and
+        multiplier; "hinge", by the displacement alone, with hinges between elements.
     degree
         Polynomial degree of the displacement.
     auxiliary_degree
         Degree of the auxiliary gradient and of its multiplier; one less than `degree` by default.
+        None in the hinge scheme, which has neither.
     quadrature_degree
         Degree integrated exactly; 2 `degree` + 2 by default.
     """
 
-    scheme: Literal["micromorphic"] = "micromorphic"
+    scheme: Literal["micromorphic", "hinge"] = "micromorphic"
     degree: Literal[2, 3, 4, 5] = 4
-    auxiliary_degree: int = Field(default_factory=_default_auxiliary_degree, ge=1, le=4)
+    auxiliary_degree: int | None = Field(default_factory=_default_auxiliary_degree, ge=1, le=4)
     quadrature_degree: int = Field(default_factory=_default_beam_quadrature_degree, ge=2, le=20)
 
     @field_validator("auxiliary_degree")
     @classmethod
-    def _below_degree(cls, value: int, info: ValidationInfo) -> int:
-        degree = info.data.get("degree")
-        if degree is not None and value >= degree:
+    def _below_degree(cls, value: int | None, info: ValidationInfo) -> int | None:
+        degree, scheme = info.data.get("degree"), info.data.get("scheme")
+        if value is not None and scheme == "hinge":
+            text = "not allowed in the hinge scheme, which has no auxiliary gradient"
+            raise problem_error(Problem(text))
+        if value is not None and degree is not None and value >= degree:
             rule = f"be less than discretisation.degree ({degree})"
             raise problem_error(Problem(not_allowed(value, rule)))
         return value
@@ -66,7 +71,6 @@ class Discretisation(BeamDiscretisation):
         whose energy is smooth.
     """
 
-    degree: Literal[2, 3] = 3
-    auxiliary_degree: int = Field(default_factory=_default_auxiliary_degree, ge=1, le=2)
+    degree: Literal[2, 3, 4] = 3
     quadrature_degree: int = Field(default_factory=_default_sheet_quadrature_degree, ge=2, le=20)
     shear_regularisation: float = Field(default=1e-4, gt=0)

@@ -53,7 +53,7 @@ class ContinuumEquilibrium:
     def _compile(self) -> None:
         d = self.discretisation
         functional = d.functional
-        energies = {name: density * d.measure for name, density in d.densities.items()}
+        energies = dict(d.stored)
         for support in self.supports:
             for name, term in support.stored.items():
                 functional += term

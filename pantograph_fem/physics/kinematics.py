@@ -50,6 +50,11 @@ def curvature(a: Expr, da: Expr) -> Expr:
     return cross(a, da) / ufl.dot(a, a)
 
 
+def angle_between(a: Expr, b: Expr) -> Expr:
+    """Angle from a to b, in (-π, π]."""
+    return atan2(cross(a, b), ufl.dot(a, b))
+
+
 def direction_angle(a: Expr) -> Expr:
     """Angle φ from x to a fibre vector, in (-π, π]."""
     return atan2(a[1], a[0])

@@ -1,7 +1,19 @@
 """Schemes: each turns an energy into fields and a functional that is stationary at equilibrium."""
 
-from .discretisation import Discretisation, Scales
+from .choice import SchemeName, discretise
+from .discretisation import Discretisation, Scales, integration
 from .first_gradient import first_gradient
+from .hinge import hinge, hinge_stiffness
 from .micromorphic import micromorphic
 
-__all__ = ["Discretisation", "Scales", "first_gradient", "micromorphic"]
+__all__ = [
+    "Discretisation",
+    "Scales",
+    "SchemeName",
+    "discretise",
+    "first_gradient",
+    "hinge",
+    "hinge_stiffness",
+    "integration",
+    "micromorphic",
+]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import ufl
 
-from dolfinx import fem
+from dolfinx import fem, mesh
 
 from ..physics.energy import FibreEnergy
 from ..physics.kinematics import Expr, fibre
@@ -50,6 +50,8 @@ class Discretisation:
         The unknown fields.
     functional
         Form whose first variation vanishes at equilibrium, J.
+    stored
+        Stored energy of each effect as it is discretised, J.
     energy
         The continuum energy that was discretised.
     densities
@@ -59,8 +61,10 @@ class Discretisation:
     bent_gradient
         The placement gradient whose derivative is the curvature, shape (2, d); None where no
         effect sees curvature.
-    measure
-        Integration measure, with its quadrature degree.
+    curvature_degree
+        Degree of the curvatures, as far as they are polynomials.
+    quadrature_degree
+        Degree that is integrated exactly.
     scales
         Sizes by which solvers measure the unknowns.
     """
@@ -68,11 +72,13 @@ class Discretisation:
     state: fem.Function
     fields: tuple[Field, ...]
     functional: ufl.Form
+    stored: dict[str, ufl.Form]
     energy: FibreEnergy
     densities: dict[str, Expr]
     displacement: Expr
     bent_gradient: Expr | None
-    measure: ufl.Measure
+    curvature_degree: int
+    quadrature_degree: int
     scales: Scales
 
     def field(self, name: str) -> Field | None:
@@ -103,6 +109,15 @@ class Discretisation:
         return sizes
 
 
-def integration(quadrature_degree: int) -> ufl.Measure:
-    """Measure with a fixed quadrature degree: UFL's own estimate for (31) is absurdly high."""
-    return ufl.Measure("dx", metadata={"quadrature_degree": quadrature_degree})
+def integration(
+    kind: str,
+    quadrature_degree: int,
+    domain: mesh.Mesh | None = None,
+    facets: mesh.MeshTags | None = None,
+) -> ufl.Measure:
+    """Measure "dx", "dS" or "ds" with a fixed quadrature degree.
+
+    UFL's own estimate of the degree is absurdly high for (31).
+    """
+    metadata = {"quadrature_degree": quadrature_degree}
+    return ufl.Measure(kind, domain=domain, subdomain_data=facets, metadata=metadata)

@@ -29,15 +29,18 @@ def first_gradient(
     densities = energy.displacement_densities(u) | energy.first_gradient_densities(
         energy.reference + ufl.grad(u)
     )
-    dx = integration(quadrature_degree)
+    dx = integration("dx", quadrature_degree)
+    stored = {name: density * dx for name, density in densities.items()}
     return Discretisation(
         state=u,
         fields=fields_of(space, {"displacement": scales.length}),
-        functional=sum(densities.values()) * dx,
+        functional=sum(stored.values()),
+        stored=stored,
         energy=energy,
         densities=densities,
         displacement=u,
         bent_gradient=None,
-        measure=dx,
+        curvature_degree=0,
+        quadrature_degree=quadrature_degree,
         scales=scales,
     )

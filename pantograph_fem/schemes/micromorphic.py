@@ -70,7 +70,8 @@ def micromorphic(
         0.5 * GAP_STIFFNESS * K_b / h**2 * ufl.dot(gap_of_fibre, gap_of_fibre)
         for K_b, gap_of_fibre in ((K_b, gap * energy.directions[i]) for i, K_b in energy.bending)
     )
-    dx = integration(quadrature_degree)
+    dx = integration("dx", quadrature_degree)
+    stored = {name: density * dx for name, density in densities.items()}
     return Discretisation(
         state=state,
         fields=fields_of(
@@ -79,10 +80,12 @@ def micromorphic(
             multipliers=("multiplier",),
         ),
         functional=(sum(densities.values()) + ufl.inner(Lambda, gap)) * dx,
+        stored=stored,
         energy=energy,
         densities=densities,
         displacement=u,
         bent_gradient=bent,
-        measure=dx,
+        curvature_degree=auxiliary_degree - 1,
+        quadrature_degree=quadrature_degree,
         scales=scales,
     )

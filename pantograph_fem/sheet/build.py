@@ -14,7 +14,7 @@ from ..mesh import Triangulation, read_mesh, rectangle
 from ..parallel import at_root
 from ..physics.energy import FibreEnergy, sheet_energy
 from ..physics.rigid_motion import RigidMotion
-from ..schemes import Discretisation, Scales, first_gradient, micromorphic
+from ..schemes import Discretisation, Scales, discretise
 from .domain import GRIPS, Domain, distribute
 from .grip import Grip
 
@@ -55,23 +55,14 @@ def build_energy(case: SheetCase, domain: Domain) -> FibreEnergy:
     )
 
 
-def discretise(case: SheetCase, domain: Domain) -> Discretisation:
-    """The scheme applied to the energy; without bending the displacement is all there is."""
-    energy = build_energy(case, domain)
+def discretise_sheet(case: SheetCase, domain: Domain) -> Discretisation:
+    """Energy (31) by the scheme of the case."""
     options = case.discretisation
-    scales = _scales(case, domain)
-    if not energy.second_gradient:
-        return first_gradient(
-            domain.mesh,
-            energy,
-            scales,
-            degree=options.degree,
-            quadrature_degree=options.quadrature_degree,
-        )
-    return micromorphic(
+    return discretise(
         domain.mesh,
-        energy,
-        scales,
+        build_energy(case, domain),
+        _scales(case, domain),
+        scheme=options.scheme,
         degree=options.degree,
         auxiliary_degree=options.auxiliary_degree,
         quadrature_degree=options.quadrature_degree,
@@ -90,7 +81,8 @@ def _grip(grip: GripCase, domain: Domain, name: str) -> Grip:
     pivot = pivots[grip.pivot] if isinstance(grip.pivot, str) else grip.pivot
     place = float(pivot[0]), float(pivot[1])
     return Grip(
-        facets=domain.facets[name],
+        tags=domain.tags,
+        tag=GRIPS.index(name),
         motion=RigidMotion.from_degrees(grip.translation, grip.rotation, place),
         clamp=grip.hold == "clamp",
         centre=(float(centre[0]), float(centre[1])),

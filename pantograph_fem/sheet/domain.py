@@ -26,8 +26,8 @@ class Domain:
     ----------
     mesh
         Distributed mesh of straight triangles.
-    facets
-        Local edge numbers of each grip.
+    tags
+        The edges of the grips, numbered as in :data:`GRIPS`.
     ends
         Leftmost and rightmost reference point of each grip, shape (2, 2), m; the centre of the
         grip is midway.
@@ -36,7 +36,7 @@ class Domain:
     """
 
     mesh: mesh.Mesh
-    facets: dict[str, NDArray[np.int32]]
+    tags: mesh.MeshTags
     ends: dict[str, NDArray[np.float64]]
     extent: float
 
@@ -60,9 +60,7 @@ def distribute(comm: MPI.Comm, triangulation: Triangulation | None) -> Domain:
         shared = (ends, float(np.hypot(*np.ptp(points, axis=0))))
     ends, extent = comm.bcast(shared, root=0)
     domain = api.create_simplex_mesh(comm, 2, points, triangles)
-    facet_tags = api.tagged_facets(domain, edges, tags)
-    facets = {name: facet_tags.find(tag) for tag, name in enumerate(GRIPS)}
-    return Domain(domain, facets, ends, extent)
+    return Domain(domain, api.tagged_facets(domain, edges, tags), ends, extent)
 
 
 def _ends(points: NDArray[np.float64]) -> NDArray[np.float64]:

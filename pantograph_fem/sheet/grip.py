@@ -8,6 +8,9 @@ import numpy as np
 import ufl
 from numpy.typing import NDArray
 
+from dolfinx import mesh
+
+from ..continuum.held_directions import HeldDirections
 from ..physics.reaction import NO_REACTION, Reaction
 from ..physics.rigid_motion import QUARTER_TURN, RigidMotion
 from ..schemes import Discretisation
@@ -21,8 +24,8 @@ class Grip:
 
     Attributes
     ----------
-    facets
-        Local numbers of the edges it holds.
+    tags, tag
+        The edges of all grips, and the number of those that this one holds.
     motion
         Its motion with the load factor.
     clamp
@@ -31,36 +34,43 @@ class Grip:
         Middle of the held edges in the reference, m; moments are taken about its current place.
     """
 
-    facets: NDArray[np.int32]
+    tags: mesh.MeshTags
+    tag: int
     motion: RigidMotion
     clamp: bool
     centre: tuple[float, float]
 
 
 class GripSupport:
-    """A grip by the dofs that it holds: all it does.
+    """A grip by the dofs that it holds; a clamp holds the auxiliary gradient, or directions weakly.
 
     Implements :class:`pantograph_fem.continuum.support.Support`.
     """
 
-    stored: dict[str, ufl.Form] = {}  # noqa: RUF012 - never changed
     potential: ufl.Form | None = None
-    pull: ufl.Form | None = None
 
     def __init__(self, grip: Grip, discretisation: Discretisation) -> None:
         self._motion = grip.motion
         self._centre = np.array([grip.centre])
         displacement = discretisation.field("displacement")
         assert displacement is not None  # every scheme has one
-        blocks = displacement.blocks_on(grip.facets)
+        facets = grip.tags.find(grip.tag)
+        blocks = displacement.blocks_on(facets)
         self._X = displacement.coordinates[blocks]
         dofs = [displacement.dofs[blocks]]
         self._gradients = 0
         gradient = discretisation.field("gradient")
+        self._directions: HeldDirections | None = None
+        self.stored: dict[str, ufl.Form] = {}
+        self.pull: ufl.Form | None = None
         if grip.clamp and gradient is not None:
-            blocks = gradient.blocks_on(grip.facets)
+            blocks = gradient.blocks_on(facets)
             dofs.append(gradient.dofs[blocks])
             self._gradients = len(blocks)
+        elif grip.clamp:
+            self._directions = HeldDirections(discretisation, grip.tags, grip.tag, grip.motion)
+            self.stored["bending"] = self._directions.stored
+            self.pull = self._directions.pull
         self.dofs = np.concatenate([part.ravel() for part in dofs])
 
     def values(self, load: float) -> Array:
@@ -90,11 +100,15 @@ class GripSupport:
         )
 
     def move(self, load: float) -> None:
-        """There are no forms to change."""
+        """Turn the held directions."""
+        if self._directions is not None:
+            self._directions.move(load)
 
     def exerted(self) -> Reaction:
-        """Nothing beyond what holds the dofs."""
-        return NO_REACTION
+        """The couple on held directions; a collective call."""
+        if self._directions is None:
+            return NO_REACTION
+        return Reaction((0.0, 0.0), self._directions.moment())
 
     def _collect(self, displacements: Array, gradient: Array) -> Array:
         return np.concatenate([displacements.ravel(), np.tile(gradient.ravel(), self._gradients)])

@@ -15,7 +15,7 @@ from ..solve.continuation import Array, Step
 from ..solve.newton import NewtonSettings
 from ..solve.path import NewtonPath
 from ..stopwatch import Stopwatch
-from .build import build_domain, build_grips, discretise
+from .build import build_domain, build_grips, discretise_sheet
 from .domain import GRIPS
 from .grip import GripSupport
 from .observables import sheet_observables
@@ -33,7 +33,7 @@ class SheetSimulation:
         with clock("mesh"):
             domain = build_domain(case, comm)
         with clock("compile"):
-            discretisation = discretise(case, domain)
+            discretisation = discretise_sheet(case, domain)
             self._sampler = FieldSampler(
                 discretisation, domain.mesh, sheet_observables(discretisation)
             )
