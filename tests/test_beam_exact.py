@@ -9,6 +9,7 @@ from mpi4py import MPI
 
 from pantograph_fem.beam.simulation import BeamSimulation
 from pantograph_fem.case import case_from_dict, load_case
+from pantograph_fem.errors import PathError
 from pantograph_fem.results.fields import read_fields
 from pantograph_fem.run import run
 from pantograph_fem.solve.continuation import follow, start_at
@@ -274,3 +275,28 @@ def test_energy_and_force_converge_at_the_expected_rate(tmp_path, degree, auxili
     low, high = RATES[degree, auxiliary]
     assert low < orders.min(), (errors, orders)
     assert orders.max() < high, (errors, orders)
+
+
+@pytest.mark.parametrize("elements", [64, 256])
+def test_a_long_first_step_does_not_end_in_a_fold(tmp_path, elements):
+    """On fine meshes Newton's method can find a beam that is folded back on itself at its tip."""
+    (exact,) = cantilever_along_an_arc(K_E, K_B, 1.0, [np.radians(3.0)])
+    rows, _, fields = solved(
+        tmp_path,
+        ends={"right": {"support": "pinned", "rotation": 3.0, "pivot": [0.5, 0.0]}},
+        mesh={"size": 1.0 / elements},
+        continuation={"initial_step": 1.0, "max_step": 1.0},
+    )
+    assert rows[-1].energy == pytest.approx(exact.energy, rel=1e-6)
+    assert np.abs(fields["angle"]).max() < 0.1
+
+
+def test_elements_that_are_too_long_to_turn_are_refused(tmp_path):
+    with pytest.raises(PathError, match="its elements are too long") as error:
+        solved(
+            tmp_path,
+            ends={"right": {"support": "free", "moment": 4 * np.pi * K_B}},
+            mesh={"size": 1.0},
+            continuation={"max_step": 0.1},
+        )
+    assert "a finer mesh" in str(error.value)

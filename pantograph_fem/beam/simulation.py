@@ -20,7 +20,8 @@ from ..solve.path import NewtonPath
 from ..stopwatch import Stopwatch
 from .build import build_axis, build_supports, discretise_beam
 from .domain import ENDS
-from .observables import beam_observables
+from .fold import FoldCheck
+from .observables import AXIS, beam_observables
 
 _REPORTED = ENDS.index("right")
 
@@ -36,10 +37,11 @@ class BeamSimulation:
             discretisation = discretise_beam(case, axis)
             sampler = FieldSampler(discretisation, axis.mesh, beam_observables(discretisation))
             supports = build_supports(case, discretisation, axis)
+            check = FoldCheck(discretisation, axis)
         self._sampler = sampler
         self._order: NDArray[np.intp] | None = None
         self._probes = Probes(discretisation, axis.mesh, case.output.probes)
-        self._equilibrium = ContinuumEquilibrium(discretisation, supports, clock)
+        self._equilibrium = ContinuumEquilibrium(discretisation, supports, clock, check)
         options = case.continuation
         self.path = NewtonPath(
             self._equilibrium, NewtonSettings(options.tolerance, options.max_iterations), clock
@@ -75,8 +77,9 @@ class BeamSimulation:
         if self._order is None:
             self.grid()
         fields = {name: values[self._order] for name, values in sampled.items()}
+        x, y = (fields.pop(name) for name in AXIS)
         # The beam turns continuously along its axis, by more than half a turn if it must.
-        fields["angle"] = np.unwrap(fields["angle"])
+        fields["angle"] = np.unwrap(np.arctan2(y, x))
         row = history_row(
             step,
             reaction,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import ufl
@@ -33,7 +33,10 @@ class ContinuumEquilibrium:
         discretisation: Discretisation,
         supports: Sequence[Support],
         clock: Stopwatch | None = None,
+        check: Callable[[], str] | None = None,
     ) -> None:
+        """Compile the forms; `check` objects to the discretisation's present state, or not."""
+        self._check = check
         self.discretisation = discretisation
         self.supports = supports
         self._clock = clock or Stopwatch()
@@ -152,6 +155,13 @@ class ContinuumEquilibrium:
             + support.exerted()
             for support in self.supports
         ]
+
+    def objection(self, x: Array, load: float) -> str:
+        """What the check has against a state; empty where it has nothing."""
+        if self._check is None:
+            return ""
+        self.load_state(x, load)
+        return self._check()
 
     def load_state(self, x: Array, load: float) -> None:
         """Put x into the state function, ghosts included, and move the supports."""

@@ -139,6 +139,10 @@ class LatticeEquilibrium:
             free = self._own(pull) - self._rows.derivatives(blocks) @ held.ravel()
             return np.where(self._own_held, self._own(held), free)
 
+    def objection(self, x: Array, load: float) -> str:
+        """Nothing: springs resist whatever could be objected to."""
+        return ""
+
     def energies(self, x: Array, load: float) -> dict[str, float]:
         """Stored energy of each effect, J; the load factor tells how far walls have turned."""
         return self._energy.energies(self.gather(x), self.rotations(load))

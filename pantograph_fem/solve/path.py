@@ -29,6 +29,8 @@ class NewtonPath:
         self._load = load
         with self._clock("solve"):
             result = self._newton.solve(self._problem.impose(guess, load))
+        if result.converged and (reason := self._problem.objection(result.x, load)):
+            return Correction(load, result.x, False, result.iterations, reason)
         return Correction(load, result.x, result.converged, result.iterations, result.reason)
 
     def linearise(self, x: Array, load: float) -> Linearisation:

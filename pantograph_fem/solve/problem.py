@@ -45,3 +45,6 @@ class Problem(Protocol):
 
     def load_rate(self, x: Array, load: float) -> Array:
         """Right side whose solution with the tangent is dx/dload along the path."""
+
+    def objection(self, x: Array, load: float) -> str:
+        """Why an equilibrium is not acceptable all the same; empty where it is."""
