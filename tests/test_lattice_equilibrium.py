@@ -2,6 +2,7 @@
 
 import math
 import os
+import re
 import subprocess
 import sys
 
@@ -217,7 +218,5 @@ def test_two_processes_compute_what_one_computes():
         timeout=120,
     )
     assert done.returncode == 0, done.stderr
-    assert sorted(line[:14] for line in done.stdout.splitlines()) == [
-        "rank 0 agrees ",
-        "rank 1 agrees ",
-    ]
+    # lines of two processes may end up in one
+    assert sorted(re.findall(r"rank \d agrees", done.stdout)) == ["rank 0 agrees", "rank 1 agrees"]
