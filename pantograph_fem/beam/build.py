@@ -7,15 +7,12 @@ from mpi4py import MPI
 from dolfinx import fem
 
 from ..case import BeamCase
-from ..case.ends import End
+from ..case.ends import HELD, End
 from ..physics.energy import FibreEnergy, beam_energy
 from ..physics.rigid_motion import RigidMotion
 from ..schemes import Discretisation, Scales, discretise
 from .domain import ENDS, Axis, distribute, nodes, piecewise
 from .end import EndConditions, EndSupport
-
-#: Components of the displacement that a support holds.
-HELD = {"clamped": (0, 1), "pinned": (0, 1), "roller": (1,), "free": ()}
 
 
 def build_axis(case: BeamCase, comm: MPI.Comm) -> Axis:

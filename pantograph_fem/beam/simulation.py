@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mpi4py import MPI
 
@@ -39,7 +38,10 @@ class BeamSimulation:
             supports = build_supports(case, discretisation, axis)
             check = FoldCheck(discretisation, axis)
         self._sampler = sampler
-        self._order: NDArray[np.intp] | None = None
+        nodes = sampler.grid()
+        # of the nodes from left to right, on rank 0
+        self._order = np.empty(0, dtype=int) if nodes is None else np.argsort(nodes[0][:, 0])
+        self._nodes = None if nodes is None else nodes[0][self._order]
         self._probes = Probes(discretisation, axis.mesh, case.output.probes)
         self._equilibrium = ContinuumEquilibrium(discretisation, supports, clock, check)
         options = case.continuation
@@ -57,14 +59,11 @@ class BeamSimulation:
         return self._equilibrium.undeformed()
 
     def grid(self) -> FieldGrid | None:
-        """Nodes along the axis on rank 0, None elsewhere; a collective call."""
-        grid = self._sampler.grid()
-        if grid is None:
+        """Nodes along the axis on rank 0, None elsewhere."""
+        if self._nodes is None:
             return None
-        points, _ = grid
-        self._order = np.argsort(points[:, 0])
-        numbers = np.arange(len(points))
-        return FieldGrid(points[self._order], np.column_stack([numbers[:-1], numbers[1:]]))
+        numbers = np.arange(len(self._nodes))
+        return FieldGrid(self._nodes, np.column_stack([numbers[:-1], numbers[1:]]))
 
     def observe(self, step: Step) -> Observation | None:
         """Numbers and fields of a state on rank 0, None elsewhere; a collective call."""
@@ -74,8 +73,6 @@ class BeamSimulation:
         sampled = self._sampler.sample()
         if sampled is None:
             return None
-        if self._order is None:
-            self.grid()
         fields = {name: values[self._order] for name, values in sampled.items()}
         x, y = (fields.pop(name) for name in AXIS)
         # The beam turns continuously along its axis, by more than half a turn if it must.

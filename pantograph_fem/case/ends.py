@@ -10,6 +10,14 @@ from .problem import Problem, not_allowed, problem_error
 
 _ORIGIN = (0.0, 0.0)
 
+#: Components of the displacement that each support holds: 0 for x, 1 for y.
+HELD: dict[str, tuple[int, ...]] = {
+    "clamped": (0, 1),
+    "pinned": (0, 1),
+    "roller": (1,),
+    "free": (),
+}
+
 
 class End(Part):
     """An end of a beam.

@@ -7,18 +7,11 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ..case.ends import HELD
 from ..errors import CaseError
 from .net import End, Net, Turns, Walls
 
 Array = NDArray[np.float64]
-
-#: How an end may be held: the components of its displacement, and whether also its direction.
-SUPPORTS: dict[str, tuple[tuple[int, ...], bool]] = {
-    "clamped": ((0, 1), True),
-    "pinned": ((0, 1), False),
-    "roller": ((1,), False),
-    "free": ((), False),
-}
 
 
 def chain(
@@ -47,7 +40,7 @@ def chain(
     stretch, bending
         K_e (N) and K_b (N m²) of the beam; an effect that is None or 0 is left out.
     supports
-        How "left" and "right" are held, by a key of :data:`SUPPORTS`; free ends need no mention.
+        How "left" and "right" are held, by a key of :data:`.HELD`; free ends need no mention.
         A roller holds the displacement along y.
     ground
         Stiffness of the foundation under each node, N/m; see :func:`winkler`.
@@ -65,9 +58,9 @@ def chain(
     ends: dict[str, End] = {}
     walls: list[tuple[int, int]] = []
     for name, (node, link) in places.items():
-        components, directed = SUPPORTS[(supports or {}).get(name, "free")]
-        if components:
-            if directed:
+        support = (supports or {}).get(name, "free")
+        if components := HELD[support]:
+            if support == "clamped":
                 walls.append((link, len(ends)))
             ends[name] = End(np.array([node]), (float(nodes[node, 0]), 0.0), components)
     turns = held = None
