@@ -6,6 +6,7 @@ Everything else calls the functions here, which carry the names of newer release
 
 from __future__ import annotations
 
+import itertools
 import logging
 from collections.abc import Callable, Sequence
 from functools import wraps
@@ -37,6 +38,9 @@ _COMPILER_FLAGS = ["-O3", "-g0", "-march=native", "-fno-math-errno"]
 _COMPILER_TIMEOUT = 120
 _OPTIONS = {"cffi_extra_compile_args": _COMPILER_FLAGS, "timeout": _COMPILER_TIMEOUT}
 _JIT = {"jit_params" if _OLD else "jit_options": _OPTIONS}
+
+#: Number of the first constant; beyond ten times as many their order in forms could change.
+_FIRST_CONSTANT = 10**6
 
 #: Cells by their dimension.
 _CELLS = {1: "interval", 2: "triangle"}
@@ -77,12 +81,39 @@ def create_simplex_mesh(
     if comm.rank != 0:
         points, cells = np.empty((0, dimension)), np.empty((0, dimension + 1), dtype=np.int64)
     cells = np.ascontiguousarray(cells, dtype=np.int64)
-    domain = ufl.Mesh(_lagrange(1, (dimension,), _CELLS[dimension]))
+    _keep_constants_in_order()
+    domain = ufl.Mesh(_coordinate_element(dimension))
     if _OLD:
         return mesh.create_mesh(comm, cells, points, domain)
     neighbours = mesh.create_cell_partitioner(mesh.GhostMode.shared_facet)
     # By name: the order of the two changed in 0.10.
     return mesh.create_mesh(comm, cells, x=points, e=domain, partitioner=neighbours)
+
+
+def _coordinate_element(dimension: int) -> Any:
+    """Element of the positions in straight cells.
+
+    With the variant spelled out, which the compiler of 0.5 would otherwise write into the mesh of
+    the first form that it compiles: the later forms of that mesh would be cached by other names
+    than they are looked up by once the first one is found in the cache.
+    """
+    if not _OLD:
+        return _lagrange(1, (dimension,), _CELLS[dimension])
+    element = ufl.FiniteElement("Lagrange", _CELLS[dimension], 1, variant="equispaced")
+    return ufl.VectorElement(element, dim=dimension)
+
+
+def _keep_constants_in_order() -> None:
+    """Give constants numbers of equally many digits.
+
+    UFL sorts the constants of a form by their numbers as text, so that of two equal forms one with
+    the constants 9 and 10 has another name in the cache than one with the constants 8 and 9.
+    """
+    if _OLD:
+        ufl.Constant._globalcount = max(ufl.Constant._globalcount, _FIRST_CONSTANT)
+    else:
+        used = next(ufl.Constant._counter or itertools.count())
+        ufl.Constant._counter = itertools.count(max(used, _FIRST_CONSTANT))
 
 
 def tagged_facets(
@@ -198,9 +229,21 @@ def evaluate(
     return compiled.eval(cells) if _OLD else compiled.eval(domain, cells)
 
 
-def create_matrix(a: Form) -> PETSc.Mat:
-    """Matrix with the sparsity of a bilinear form."""
-    return fem.petsc.create_matrix(a)
+def create_symmetric_matrix(a: Form) -> PETSc.Mat:
+    """Upper half of a matrix with the sparsity of a symmetric bilinear form.
+
+    Half of the places to look up: assembly takes half of the time, and the factorisation needs no
+    copy of a half.
+    """
+    full = fem.petsc.create_matrix(a)
+    fem.petsc.assemble_matrix(full, a)  # else the conversion drops places without a value
+    full.assemble()
+    full.setOption(PETSc.Mat.Option.SYMMETRIC, True)
+    half = full.convert(PETSc.Mat.Type.SBAIJ, PETSc.Mat())
+    half.setLGMap(*full.getLGMap())
+    half.setOption(PETSc.Mat.Option.IGNORE_LOWER_TRIANGULAR, True)
+    full.destroy()
+    return half
 
 
 def assemble_matrix(A: PETSc.Mat, a: Form, bcs: Sequence[Any]) -> None:

@@ -36,7 +36,7 @@ class Spring:
         self.last_load = load
         self.linearised.append(load)
         slope = float(self.df(x[0]))
-        return Linearisation(np.array([1.0 / slope]), int(slope < 0), 0, int(slope == 0))
+        return Linearisation(x, np.array([1.0 / slope]), int(slope < 0), 0, int(slope == 0))
 
 
 def hardening(**options):

@@ -15,7 +15,8 @@ from pantograph_fem.lattice.end_load import EndLoad
 from pantograph_fem.lattice.equilibrium import LatticeEquilibrium
 from pantograph_fem.lattice.links import angle_between
 from pantograph_fem.physics.rigid_motion import RigidMotion
-from pantograph_fem.solve.newton import NewtonSettings, NewtonSolver
+from pantograph_fem.solve.newton import NewtonSolver
+from pantograph_fem.solve.newton_settings import NewtonSettings
 
 K_E, K_B, LENGTH, COUNT = 4.05e8, 7.59e5, 1.0, 20
 SPACING = LENGTH / COUNT

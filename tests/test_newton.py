@@ -5,7 +5,8 @@ import pytest
 
 from petsc4py import PETSc
 
-from pantograph_fem.solve.newton import NewtonSettings, NewtonSolver
+from pantograph_fem.solve.newton import NewtonSolver
+from pantograph_fem.solve.newton_settings import NewtonSettings
 
 
 class Saddle:

@@ -14,7 +14,7 @@ from ..reporting import TIP_COLUMNS, history_row, tip_columns
 from ..results.fields import FieldGrid
 from ..simulation import Observation
 from ..solve.continuation import Array, Step
-from ..solve.newton import NewtonSettings
+from ..solve.newton_settings import NewtonSettings
 from ..solve.path import NewtonPath
 from ..stopwatch import Stopwatch
 from .build import build_axis, build_supports, discretise_beam

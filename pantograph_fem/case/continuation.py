@@ -67,7 +67,7 @@ class Continuation(Part):
     max_step: float = Field(default=0.25, gt=0, le=1)
     min_step: float = Field(default=1e-5, ge=_SMALLEST_STEP, le=1)
     initial_step: float = Field(default_factory=_default_initial_step, gt=0, le=1)
-    growth: float = Field(default=1.5, gt=1)
+    growth: float = Field(default=2.0, gt=1)
     cutback: float = Field(default=0.5, gt=0, lt=1)
     target_iterations: int = Field(default=4, ge=1)
     critical_step: float = Field(default=1e-3, gt=0, le=1)

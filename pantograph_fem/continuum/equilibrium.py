@@ -63,6 +63,7 @@ class ContinuumEquilibrium:
                 energies[name] += term
             if support.potential is not None:
                 functional += support.potential
+        self._potential = api.form(functional)
         residual = ufl.derivative(functional, self._state)
         self._residual = api.form(residual)
         self._tangent = api.form(ufl.derivative(residual, self._state))
@@ -85,9 +86,14 @@ class ContinuumEquilibrium:
         """One per multiplier dof."""
         return self.discretisation.multiplier_dofs
 
+    @property
+    def has_minima(self) -> bool:
+        """Yes, but for multipliers."""
+        return self.discretisation.multiplier_dofs == 0
+
     def matrix(self) -> PETSc.Mat:
-        """An empty matrix for the tangent."""
-        return api.create_matrix(self._tangent)
+        """A matrix for the tangent, of which it holds the upper half."""
+        return api.create_symmetric_matrix(self._tangent)
 
     def undeformed(self) -> Array:
         """The state of rest."""
@@ -100,6 +106,13 @@ class ContinuumEquilibrium:
             mine = support.dofs < self._owned
             imposed[support.dofs[mine]] = support.values(load)[mine]
         return imposed
+
+    def potential(self, x: Array, load: float) -> float:
+        """The functional of which an equilibrium is a stationary point, J."""
+        with self._clock("assemble"):
+            self.load_state(x, load)
+            potential = fem.assemble_scalar(self._potential)
+            return self._comm.allreduce(potential, MPI.SUM)
 
     def residual(self, x: Array, load: float, r: PETSc.Vec) -> None:
         """Out-of-balance forces; zero at the held dofs, whose values x must already have."""

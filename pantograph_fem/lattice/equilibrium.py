@@ -99,6 +99,11 @@ class LatticeEquilibrium:
         """None: displacements are all there is."""
         return 0
 
+    @property
+    def has_minima(self) -> bool:
+        """Yes, but for dead couples: their work is that of an angle, which is many-valued."""
+        return not self._couples.any()
+
     def matrix(self) -> PETSc.Mat:
         """An empty matrix for the tangent."""
         return self._rows.matrix(self._comm)
@@ -110,6 +115,13 @@ class LatticeEquilibrium:
     def impose(self, x: Array, load: float) -> Array:
         """A copy of x with the ends where they are at the load factor."""
         return np.where(self._own_held, self._own(self._prescribed(load)), x)
+
+    def potential(self, x: Array, load: float) -> float:
+        """Stored energy less the work of dead forces, J."""
+        with self._clock("assemble"):
+            u = self.gather(x)
+            stored = sum(self._energy.energies(u, self.rotations(load)).values())
+            return stored - load * float((self._forces * u).sum())
 
     def residual(self, x: Array, load: float, r: PETSc.Vec) -> None:
         """Out-of-balance forces; zero at the held unknowns, whose values x must already have."""

@@ -32,12 +32,14 @@ class Correction:
 
 @dataclass(frozen=True)
 class Linearisation:
-    """Tangent of the path at a state, and its inertia.
+    """A state, the tangent of the path there, and its inertia.
 
+    `x` is the state given, corrected once more.
     `expected_negative_pivots` is what a stable state has; more of them, or zero pivots, mean
     that the energy is not at a minimum under the constraints.
     """
 
+    x: Array
     rate: Array
     negative_pivots: int
     expected_negative_pivots: int
@@ -126,7 +128,7 @@ def follow(
     number, iterations = start.number, start.iterations
     linearisation = problem.linearise(here.x, here.load)
     while True:
-        here = PathPoint(here.load, here.x, linearisation.rate)
+        here = PathPoint(here.load, linearisation.x, linearisation.rate)
         points = (*earlier[-1:], here)
         yield Step(
             number,

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 from petsc4py import PETSc
 
+from ..errors import PathError
+
 #: MUMPS control: detect null pivots, so that the inertia also counts zero eigenvalues.
 _NULL_PIVOTS = 24
 #: MUMPS control: per cent of workspace beyond the estimate, for delayed pivots.
@@ -20,11 +22,16 @@ class Inertia:
     zero: int
 
 
+class SingularTangentError(PathError):
+    """The tangent has no factor, or there is no memory for it."""
+
+
 class Factorisation:
     """LDLᵀ factor of one symmetric matrix whose entries change."""
 
-    def __init__(self, ksp: PETSc.KSP, matrix: PETSc.Mat) -> None:
-        """Set up `ksp` to solve with `matrix` directly."""
+    def __init__(self, matrix: PETSc.Mat) -> None:
+        """Set up to factorise `matrix`."""
+        ksp = PETSc.KSP().create(matrix.comm)
         matrix.setOption(PETSc.Mat.Option.SYMMETRIC, True)
         matrix.setOption(PETSc.Mat.Option.SYMMETRY_ETERNAL, True)
         ksp.setType(PETSc.KSP.Type.PREONLY)
@@ -44,8 +51,20 @@ class Factorisation:
         self._ksp.setUp()
 
     def solve(self, right: PETSc.Vec, x: PETSc.Vec) -> None:
-        """Back-substitute with the last factor."""
+        """Back-substitute with the last factor.
+
+        Raises
+        ------
+        SingularTangentError
+            Where the factorisation failed.
+        """
         self._ksp.solve(right, x)
+        if self._ksp.getConvergedReason() < 0:
+            raise SingularTangentError(
+                f"The tangent of {self._matrix.size[0]} unknowns could not be factorised by MUMPS: "
+                "it is singular, or memory ran out. Give the case an effect that resists every "
+                "deformation, or a coarser mesh."
+            )
 
     @property
     def inertia(self) -> Inertia:

@@ -3,59 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from petsc4py import PETSc
 
-from .factorisation import Factorisation
+from .factor_reuse import FactorReuse
+from .factorisation import Factorisation, SingularTangentError
+from .newton_settings import REASONS, NewtonResult, NewtonSettings
 
 Array = NDArray[np.float64]
 
-#: Errors, in typical sizes, above which an old factor is not trusted.
-_NEAR = 1e-2
 #: A bound that is never met in practice: each step with an old factor contracts the error.
-_STEPS_PER_TANGENT = 10
-
-
-@dataclass(frozen=True)
-class NewtonSettings:
-    """When to stop.
-
-    Attributes
-    ----------
-    tolerance
-        Largest remaining error of any unknown, in its typical size.
-    max_iterations
-        Tangents after which a solve has failed.
-    line_search
-        PETSc's name: "bt" shortens steps until the residual norm falls, "basic" never does.
-    contraction
-        A factor is used again while each step leaves at most this share of the error; 0 makes
-        every step a full Newton step.
-    """
-
-    tolerance: float = 1e-8
-    max_iterations: int = 15
-    line_search: str = "bt"
-    contraction: float = 0.2
-
-
-@dataclass(frozen=True)
-class NewtonResult:
-    """What a solve ended with.
-
-    `iterations` counts the tangents that were factorised, which is what a solve costs;
-    `residuals` holds the norm of the scaled residual before each step and after the last.
-    """
-
-    x: Array
-    converged: bool
-    iterations: int
-    reason: str
-    residuals: tuple[float, ...]
+_STEPS_PER_TANGENT = 20
+#: A Newton step that leaves more than this share of the error is a slow one;
+_SLOW = 0.7
+#: so many in a row, and another way of shortening steps is tried, where there is one.
+_SLOW_STEPS = 3
 
 
 class NewtonSolver:
@@ -69,8 +34,14 @@ class NewtonSolver:
     Unlike a residual norm this depends neither on the mesh size nor on the quality of the
     predictor. That correction, being at hand, is then applied.
 
-    Comparing such corrections tells how well the factor at hand still contracts the error. While
-    it does well no new one is made: a back-substitution costs a tenth of a factorisation.
+    Comparing such corrections tells how well the factor at hand still contracts the error: see
+    :class:`~pantograph_fem.solve.factor_reuse.FactorReuse`.
+
+    An attempt that fails is followed by another: with a new factor at each step, as the direction
+    from an old one may be none in which the residual falls; and with steps that are shortened
+    until the potential falls instead of the residual, where stable states are its minima. Far
+    from equilibrium the potential is the better guide; near it differences of it drown in
+    round-off, which is why it comes last.
     """
 
     def __init__(
@@ -81,6 +52,7 @@ class NewtonSolver:
         typical: Array,
         typical_energy: float,
         settings: NewtonSettings | None = None,
+        potential: Callable[[Array], float] | None = None,
     ) -> None:
         """Prepare the solver.
 
@@ -94,58 +66,104 @@ class NewtonSolver:
             s of the owned unknowns.
         typical_energy
             e.
+        settings
+            When to stop.
+        potential
+            The potential at the owned unknowns x, if a stable equilibrium is a minimum of it.
         """
         self.settings = settings or NewtonSettings()
-        self._residual, self._tangent = residual, tangent
+        self._residual, self._tangent, self._potential = residual, tangent, potential
         self._matrix = matrix
         self._energy = typical_energy
         self._scale = matrix.createVecLeft()
         self._scale.array[:] = typical
         self._error = matrix.createVecLeft()
         self._x = matrix.createVecLeft()
+        self._factorisation = Factorisation(matrix)
+        self._policy = FactorReuse(self.settings.tolerance, self.settings.contraction)
         self._residuals: list[float] = []
+        self._tangents = 0  # factorised in this solve
+        self._bound = 0  # tangents after which the attempt has failed
+        self._slow = 0  # slow Newton steps in a row
         self._last_error = np.inf
-        self._tangents = 0
-        self._factorised = False
+        self._factorised = False  # the factor at hand is that of a state nearby
+        self._keep = False  # the factor at hand is used for the next step
+        self._step_at_hand = False  # that step is the error just estimated
         self._reuse = True
-        self._keep = False
+        self._patient = True
 
-        self._snes = PETSc.SNES().create(matrix.comm)
-        self._factorisation = Factorisation(self._snes.getKSP(), matrix)
-        self._snes.setFunction(self._fill_residual, matrix.createVecLeft())
-        self._snes.setJacobian(self._fill_tangent, matrix)
-        self._snes.setConvergenceTest(self._test_convergence)
-        # SNES compares its own residual tolerances nowhere: the test above replaces them.
-        self._snes.setTolerances(max_it=_STEPS_PER_TANGENT * self.settings.max_iterations)
-        options = PETSc.Options()
-        name = "snes_linesearch_type"
-        prefix = f"pantograph_{id(self):x}_"
-        options[prefix + name] = self.settings.line_search
-        self._snes.setOptionsPrefix(prefix)
-        self._snes.setFromOptions()
-        options.delValue(prefix + name)
+        self._snes = self._newton("r")
+        self._descent = self._newton("p") if potential is not None else None
 
     def solve(self, guess: Array) -> NewtonResult:
         """Iterate from a guess that satisfies the constraints; `guess` is not changed."""
-        self._reuse = self.settings.contraction > 0
-        result = self._solve(guess)
-        if self._reuse and not result.converged and result.iterations < len(result.residuals) - 1:
-            # A direction from an old factor may be none in which the residual falls.
-            self._reuse = False
-            result = self._solve(guess)
-        return result
-
-    def _solve(self, guess: Array) -> NewtonResult:
         self._residuals.clear()
         self._tangents = 0
-        self._last_error = np.inf
+        self._reuse = self.settings.contraction > 0
+        self._patient = self._descent is None
+        result = self._attempt(self._snes, guess)
+        if self._descent is not None and not result.converged:
+            self._reuse, self._patient = False, True
+            return self._attempt(self._descent, guess)
+        if self._reuse and not result.converged and self._tangents < len(self._residuals) - 1:
+            self._reuse = False
+            return self._attempt(self._snes, guess)
+        return result
+
+    def factorise(self, x: Array) -> Factorisation:
+        """Factorise the tangent at x; valid until the next solve."""
+        self._x.array[:] = x / self._scale.array
+        self._new_factor(self._x)
+        return self._factorisation
+
+    def correction(self, x: Array) -> Array:
+        """What a Newton step from x with the last factor adds to x, in physical units."""
+        residual = self._matrix.createVecLeft()
+        self._residual(x, residual)
+        return -self.back_substitute(residual.array)
+
+    def back_substitute(self, load: Array) -> Array:
+        """Solve (tangent last factorised) y = load, in physical units."""
+        right = self._matrix.createVecLeft()
+        right.array[:] = load * self._scale.array / self._energy
+        y = self._matrix.createVecLeft()
+        self._factorisation.solve(right, y)
+        return y.array * self._scale.array
+
+    def apply(self, _: PETSc.PC, r: PETSc.Vec, step: PETSc.Vec) -> None:
+        """Newton's step from the residual r, as PETSc's preconditioner."""
+        if self._step_at_hand:
+            self._error.copy(step)
+        else:
+            self._factorisation.solve(r, step)
+        self._step_at_hand = False
+
+    def _newton(self, suffix: str) -> PETSc.SNES:
+        snes = PETSc.SNES().create(self._matrix.comm)
+        ksp = snes.getKSP()
+        ksp.setType(PETSc.KSP.Type.PREONLY)
+        ksp.getPC().setType(PETSc.PC.Type.PYTHON)
+        ksp.getPC().setPythonContext(self)
+        snes.setFunction(self._fill_residual, self._matrix.createVecLeft())
+        snes.setJacobian(self._fill_tangent, self._matrix)
+        if suffix == "p":
+            snes.setObjective(self._evaluate_potential)
+        snes.setConvergenceTest(self._test_convergence)
+        # SNES compares its own residual tolerances nowhere: the test above replaces them.
+        snes.setTolerances(max_it=_STEPS_PER_TANGENT * self.settings.max_iterations)
+        return snes
+
+    def _attempt(self, snes: PETSc.SNES, guess: Array) -> NewtonResult:
+        self._bound = self._tangents + self.settings.max_iterations
+        self._slow, self._last_error = 0, np.inf
+        self._policy.begin()
         self._error.set(0.0)
         self._x.array[:] = guess / self._scale.array
         try:
-            self._snes.solve(None, self._x)
-            code = self._snes.getConvergedReason()
-            reason = _REASONS.get(code, f"PETSc's SNES stopped with reason {code}")
-        except PETSc.Error as error:  # a factorisation that runs out of memory, for one
+            snes.solve(None, self._x)
+            code = snes.getConvergedReason()
+            reason = REASONS.get(code, f"PETSc's SNES stopped with reason {code}")
+        except (PETSc.Error, SingularTangentError) as error:  # out of memory, for one
             code, reason = -3, f"the tangent could not be factorised ({error})"
         if code > 0:
             self._x.axpy(-1.0, self._error)
@@ -158,68 +176,49 @@ class NewtonSolver:
             residuals=tuple(self._residuals),
         )
 
-    def factorise(self, x: Array) -> Factorisation:
-        """Factorise the tangent at x; valid until the next solve."""
-        self._x.array[:] = x / self._scale.array
-        self._keep = False
-        self._fill_tangent(self._snes, self._x, self._matrix, self._matrix)
-        self._factorisation.update()
-        self._factorised = True
-        return self._factorisation
-
-    def back_substitute(self, load: Array) -> Array:
-        """Solve (tangent last factorised) y = load, in physical units."""
-        right = self._matrix.createVecLeft()
-        right.array[:] = load * self._scale.array / self._energy
-        y = self._matrix.createVecLeft()
-        self._factorisation.solve(right, y)
-        return y.array * self._scale.array
-
     def _fill_residual(self, _: PETSc.SNES, x: PETSc.Vec, r: PETSc.Vec) -> None:
         self._residual(x.array_r * self._scale.array, r)
         r.pointwiseMult(r, self._scale)
         r.scale(1.0 / self._energy)
 
     def _fill_tangent(self, _: PETSc.SNES, x: PETSc.Vec, A: PETSc.Mat, P: PETSc.Mat) -> None:
-        if self._keep:  # PETSc sees that the matrix has not changed, and keeps its factor
-            return
-        self._tangent(x.array_r * self._scale.array, P)
-        P.diagonalScale(self._scale, self._scale)
-        P.scale(1.0 / self._energy)
+        if not self._keep:
+            self._new_factor(x)
+
+    def _new_factor(self, x: PETSc.Vec) -> None:
+        self._tangent(x.array_r * self._scale.array, self._matrix)
+        self._matrix.diagonalScale(self._scale, self._scale)
+        self._matrix.scale(1.0 / self._energy)
+        self._factorisation.update()
         self._tangents += 1
-        self._factorised = True  # SNES factorises what it asked for before anything else
+        self._factorised = True
+
+    def _evaluate_potential(self, _: PETSc.SNES, x: PETSc.Vec) -> float:
+        assert self._potential is not None
+        return self._potential(x.array_r * self._scale.array) / self._energy
 
     def _test_convergence(
         self, snes: PETSc.SNES, iteration: int, norms: tuple[float, float, float]
     ) -> int:
         residual = norms[2]
         self._residuals.append(residual)
+        self._keep = self._step_at_hand = False
         reasons = PETSc.SNES.ConvergedReason
         if not np.isfinite(residual):
             return reasons.DIVERGED_FNORM_NAN
         if residual == 0.0:
             return reasons.CONVERGED_FNORM_ABS
         if not self._factorised or (iteration == 0 and not self._reuse):
-            self._keep = False
             return reasons.ITERATING
         self._factorisation.solve(snes.getFunction()[0], self._error)
         error = self._error.norm(PETSc.NormType.NORM_INFINITY)
         if error <= self.settings.tolerance:
             return reasons.CONVERGED_SNORM_RELATIVE
-        if self._tangents >= self.settings.max_iterations:
+        if self._tangents >= self._bound:
             return reasons.DIVERGED_MAX_IT
-        contracts = error <= self.settings.contraction * min(self._last_error, _NEAR)
-        self._keep = self._reuse and contracts
+        self._slow = self._slow + 1 if error > _SLOW * self._last_error else 0
         self._last_error = error
+        if self._slow >= _SLOW_STEPS and not self._patient:
+            return reasons.DIVERGED_DTOL
+        self._keep = self._step_at_hand = self._policy.keep(error) and self._reuse
         return reasons.ITERATING
-
-
-_REASONS = {
-    2: "converged: the residual is zero",
-    4: "converged: the remaining error is below the tolerance",
-    -3: "the tangent is singular",
-    -4: "the residual is not a number",
-    -5: "no convergence within max_iterations",
-    -6: "the line search found no step that lowers the residual",
-    -8: "the line search ended in a local minimum of the residual",
-}

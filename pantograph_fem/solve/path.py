@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from ..stopwatch import Stopwatch
 from .continuation import Array, Correction, Linearisation
-from .newton import NewtonSettings, NewtonSolver
+from .newton import NewtonSolver
+from .newton_settings import NewtonSettings
 from .problem import Problem
 
 
@@ -22,6 +23,7 @@ class NewtonPath:
             problem.typical_sizes,
             problem.typical_energy,
             settings,
+            self._potential if problem.has_minima else None,
         )
 
     def correct(self, guess: Array, load: float) -> Correction:
@@ -33,14 +35,23 @@ class NewtonPath:
             return Correction(load, result.x, False, result.iterations, reason)
         return Correction(load, result.x, result.converged, result.iterations, result.reason)
 
+    def _potential(self, x: Array) -> float:
+        return self._problem.potential(x, self._load)
+
     def linearise(self, x: Array, load: float) -> Linearisation:
-        """Factorise the tangent at an accepted state: its inertia, and the path's direction."""
+        """Factorise the tangent at an accepted state: its inertia, and the path's direction.
+
+        The factor, being at hand, corrects the state once more: forces, which are differences of
+        large ones in places, gain more digits than the state had.
+        """
         self._load = load
         with self._clock("solve"):
             factor = self._newton.factorise(x)
+            x = x + self._newton.correction(x)
             rate = self._newton.back_substitute(self._problem.load_rate(x, load))
             inertia = factor.inertia
         return Linearisation(
+            x=x,
             rate=rate,
             negative_pivots=inertia.negative,
             expected_negative_pivots=self._problem.expected_negative_pivots,

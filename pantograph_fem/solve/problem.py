@@ -31,11 +31,18 @@ class Problem(Protocol):
     def expected_negative_pivots(self) -> int:
         """Negative eigenvalues of the tangent at a stable state."""
 
+    @property
+    def has_minima(self) -> bool:
+        """Whether the stable states are minima of :meth:`potential`."""
+
     def matrix(self) -> PETSc.Mat:
         """An empty matrix for the tangent."""
 
     def impose(self, x: Array, load: float) -> Array:
         """A copy of x with the held unknowns where they are at the load factor."""
+
+    def potential(self, x: Array, load: float) -> float:
+        """What is stationary at equilibrium, J; asked for where it `has_minima`."""
 
     def residual(self, x: Array, load: float, r: PETSc.Vec) -> None:
         """Gradient of the potential; zero at the held unknowns, whose values x must have."""

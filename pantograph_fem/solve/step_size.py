@@ -31,7 +31,7 @@ class StepSettings:
     initial_step: float = 0.02
     min_step: float = 1e-5
     max_step: float = 0.25
-    growth: float = 1.5
+    growth: float = 2.0
     cutback: float = 0.5
     target_iterations: int = 4
     critical_step: float = 1e-3
