@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from . import checkpoint
+from .adapt import MESH_FILE
 from .case import case_to_toml
 from .checkpoint import Saved
 from .errors import CaseError
@@ -18,13 +22,17 @@ from .results.history import HistoryRow, HistoryWriter
 from .results.progress import Progress
 from .results.summary import package_versions, write_summary
 from .simulation import Simulation
-from .solve.continuation import Step
+from .solve.continuation import Array, Step
 from .stopwatch import Stopwatch
 
 if TYPE_CHECKING:
     from mpi4py import MPI
 
+    from .adapt.accuracy import Accuracy
     from .case import Case
+
+#: Column of the lowest eigenvalue of the tangent, in typical energies.
+EIGENVALUE = "lowest_eigenvalue"
 
 
 class Recorder:
@@ -42,6 +50,7 @@ class Recorder:
         comm: MPI.Comm,
         quiet: bool,
         resumed: Saved | None = None,
+        accuracy: Accuracy | None = None,
     ) -> None:
         self._case = case
         self._simulation = simulation
@@ -56,6 +65,8 @@ class Recorder:
             # mpirun gives its processes a terminal even where it has none itself.
             plain=comm.size > 1,
         )
+        self._accuracy = accuracy
+        self._critical: list[dict[str, object]] = []
         self._history: HistoryWriter | None = None
         self._fields: FieldsWriter | None = None
         self._kept_rows = resumed.rows if resumed else 0
@@ -85,30 +96,57 @@ class Recorder:
         with self._clock("output"):
             observation = self._simulation.observe(step)
             wanted = self._case.output.fields
-            keep = wanted == "all" or (wanted == "stops" and step.is_stop)
+            marked = step.is_stop or step.critical is not None
+            keep = wanted == "all" or (wanted == "stops" and marked)
+            mode = self._mode(step) if keep else None
             before = Saved(step.checkpoint, self._kept_rows + len(self.rows), self._states)
 
             def write() -> None:
                 assert observation is not None
                 assert self._history is not None
-                self.rows.append(observation.row)
-                self._history.write(observation.row)
+                row = self._with_eigenvalue(observation.row, step)
+                self.rows.append(row)
+                self._history.write(row)
                 if self._fields is not None and keep:
-                    self._fields.write(step.load, observation.fields, observation.cell_fields)
+                    fields = observation.fields if mode is None else observation.fields | mode
+                    self._fields.write(step.load, fields, observation.cell_fields)
                     self._states += 1
-                self._progress.accepted(observation.row, self._clock.total)
+                self._progress.accepted(row, self._clock.total)
+                self._note_critical(step)
 
             at_root(self._comm, write)
-            # Last: if the run dies before this, it is taken up one state earlier.
-            checkpoint.save(self._directory, self._comm, self._fingerprint, before)
+            if step.critical is None:  # there the tangent is singular, and leads nowhere
+                # Last: if the run dies before this, it is taken up one state earlier.
+                checkpoint.save(self._directory, self._comm, self._fingerprint, before)
 
     def rejected(self, load: float, step: float, reason: str) -> None:
         """Show a step that was cut back."""
         self._progress.rejected(load, step, reason)
 
     def finish(self, status: str) -> None:
-        """Draw the figures and write the summary."""
+        """Draw the figures, write the summary and say how accurate the end of the path is."""
         at_root(self._comm, lambda: self._finish(status))
+
+    def _mode(self, step: Step) -> dict[str, Array] | None:
+        """The lowest mode, if it is known, with the largest displacement of one."""
+        lowest = step.linearisation.lowest
+        if lowest is None:
+            return None
+        mode = self._simulation.displacement(lowest.shape, step.load)
+        return None if mode is None else {"mode": mode / np.hypot(*mode.T).max()}
+
+    def _with_eigenvalue(self, row: HistoryRow, step: Step) -> HistoryRow:
+        if not self._case.output.eigenvalues:
+            return row
+        lowest = step.linearisation.lowest
+        value = np.nan if lowest is None else lowest.eigenvalue
+        return replace(row, extra={**row.extra, EIGENVALUE: value})
+
+    def _note_critical(self, step: Step) -> None:
+        if step.critical is None:
+            return
+        self._critical.append({"step": step.number, "load": step.load, "kind": step.critical.kind})
+        self._progress.note(f"critical load {step.load:.7f}: {step.critical.kind}")
 
     def _open(self, grid: FieldGrid | None) -> None:
         try:
@@ -123,7 +161,7 @@ class Recorder:
             self._directory / "history.csv",
             len(self._case.output.probes),
             self._kept_rows,
-            self._simulation.extra_columns,
+            (*self._simulation.extra_columns, *([EIGENVALUE] * self._case.output.eigenvalues)),
         )
         if self._case.output.fields != "none" and grid is not None:
             self._fields = FieldsWriter(self._directory, grid, self._kept_states)
@@ -133,6 +171,8 @@ class Recorder:
         stale = [self._directory / "summary.json", *self._directory.glob("figures/*.png")]
         if not self._kept_states:
             stale += [self._directory / "fields.xdmf", self._directory / "fields.h5"]
+        if self._accuracy is None:
+            stale += [self._directory / MESH_FILE]
         if not self._kept_rows:
             stale += [self._directory / checkpoint.NAME]
         for path in stale:
@@ -142,6 +182,11 @@ class Recorder:
             figures.rmdir()
 
     def _finish(self, status: str) -> None:
+        if self._accuracy is not None and self.rows:
+            last = self.rows[-1]
+            end = (last.force, last.energy) if status == "done" else None
+            self._accuracy = self._accuracy.at_end(end)
+            self._progress.note(self._accuracy.sentence())
         # Before the figures too: a run is not lost because drawing it failed.
         self._write_summary(status)
         if self._case.output.figures:
@@ -160,4 +205,7 @@ class Recorder:
             cells=self._simulation.cells,
             seconds={**self._clock.seconds, "total": self._clock.total},
             versions=package_versions(),
+            message=self._accuracy.sentence() if self._accuracy else "",
+            accuracy=self._accuracy.as_dict() if self._accuracy else None,
+            critical_points=self._critical,
         )

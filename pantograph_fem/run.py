@@ -3,23 +3,29 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from . import checkpoint
+from .case import SheetCase
 from .errors import CaseError, PathError
 from .parallel import at_root
 from .recorder import Recorder
 from .results.history import HistoryRow
-from .simulation import build_simulation
-from .solve.continuation import follow, start_at
+from .results.progress import Progress
+from .results.summary import CRITICAL, DONE
+from .simulation import Simulation, build_simulation
+from .solve.arc_length import follow_arc_length
+from .solve.continuation import Checkpoint, Step, follow, start_at
 from .solve.step_size import StepSettings
 from .stopwatch import Stopwatch
 
 if TYPE_CHECKING:
     from mpi4py import MPI
 
+    from .adapt.accuracy import Accuracy
     from .case import Case
 
 
@@ -78,24 +84,61 @@ def run(
     directory = directory or Path("results") / case.name
     at_root(comm, lambda: _check_folder(directory))
     saved = checkpoint.load(directory, comm, case) if resume else None
-    simulation = build_simulation(case, comm, clock)
-    recorder = Recorder(case, simulation, directory, clock, comm, quiet, saved)
-    steps = follow(
-        simulation.path,
-        saved.checkpoint if saved else start_at(simulation.start),
-        _step_settings(case),
-        case.continuation.predictor,
-        recorder.rejected,
-    )
+    simulation, accuracy = _simulation(case, directory, clock, comm, quiet, saved is not None)
+    recorder = Recorder(case, simulation, directory, clock, comm, quiet, saved, accuracy)
+    start = saved.checkpoint if saved else start_at(simulation.start)
+    status = DONE
     try:
         with recorder:
-            for step in steps:
+            for step in _steps(case, simulation, start, recorder):
                 recorder.accepted(step)
+                stop = step.critical is not None and case.continuation.on_instability == "stop"
+                status = CRITICAL if stop else DONE
     except PathError as error:
         recorder.finish(f"stopped: {error}")
         raise
-    recorder.finish("done")
+    recorder.finish(status)
     return RunResult(directory, tuple(recorder.rows))
+
+
+def _steps(
+    case: Case, simulation: Simulation, start: Checkpoint, recorder: Recorder
+) -> Iterator[Step]:
+    """The path by the method of the case."""
+    options, path = case.continuation, simulation.path
+    if options.method == "arc_length":
+        return follow_arc_length(
+            path,
+            start,
+            _step_settings(case),
+            simulation.start,
+            options.max_steps,
+            recorder.rejected,
+            options.on_instability,
+        )
+    return follow(
+        path,
+        start,
+        _step_settings(case),
+        options.predictor,
+        recorder.rejected,
+        path,
+        options.on_instability,
+    )
+
+
+def _simulation(
+    case: Case, directory: Path, clock: Stopwatch, comm: MPI.Comm, quiet: bool, resumed: bool
+) -> tuple[Simulation, Accuracy | None]:
+    """What is simulated, on the mesh of the case or on one that is adapted to it."""
+    if not (isinstance(case, SheetCase) and case.mesh.adapt):
+        return build_simulation(case, comm, clock), None
+    from .adapt.adapted_sheet import adapted_sheet, resumed_sheet
+
+    if resumed:
+        return resumed_sheet(case, comm, clock, directory)
+    lines = Progress(quiet=quiet or comm.rank != 0, plain=True)
+    return adapted_sheet(case, comm, clock, _step_settings(case), directory, lines.note)
 
 
 def _check_folder(directory: Path) -> None:

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Protocol
 from .case import BeamCase, ChainCase, LatticeCase, SheetCase
 from .results.fields import FieldGrid
 from .results.history import HistoryRow
-from .solve.continuation import Array, Equilibrium, Step
+from .solve.continuation import Step
+from .solve.equilibrium import Array, ModalEquilibrium
 from .stopwatch import Stopwatch
 
 if TYPE_CHECKING:
@@ -38,7 +39,7 @@ class Simulation(Protocol):
     extra_columns: tuple[str, ...]
 
     @property
-    def path(self) -> Equilibrium:
+    def path(self) -> ModalEquilibrium:
         """The problem for continuation."""
 
     @property
@@ -50,6 +51,12 @@ class Simulation(Protocol):
 
     def observe(self, step: Step) -> Observation | None:
         """Numbers and fields of a state on rank 0, None elsewhere."""
+
+    def displacement(self, x: Array, load: float) -> Array | None:
+        """Displacement of a state, or of a mode, on the nodes of the fields, shape (n, 2).
+
+        On rank 0, None elsewhere.
+        """
 
 
 def build_simulation(case: Case, comm: MPI.Comm, clock: Stopwatch) -> Simulation:

@@ -122,6 +122,18 @@ def test_probes_may_lie_on_the_edge() -> None:
     assert probes == ((0.0, 0.0), (0.068, 0.204))
 
 
+def test_the_first_of_a_series_of_meshes_is_coarse() -> None:
+    mesh = case_from_dict(tables()).mesh
+    assert not mesh.adapt
+    assert (mesh.accuracy, mesh.accuracy_of) == (1e-3, "force")
+    first = case_from_dict(tables(mesh={"adapt": True}, grips={"top": {"hold": "clamp"}})).mesh
+    assert first.size == pytest.approx(0.068 / 6)
+    assert first.corner_size == pytest.approx(0.068 / 120)
+    assert first.grip_size == pytest.approx(0.002)
+    given = case_from_dict(tables(mesh={"adapt": True, "size": 0.004, "corner_size": 0.001})).mesh
+    assert (given.size, given.corner_size) == (0.004, 0.001)
+
+
 def test_mesh_file_is_relative_to_the_case_file(tmp_path: Path) -> None:
     (tmp_path / "x.msh").touch()
     folder = tmp_path / "cases"
@@ -211,7 +223,14 @@ def cases(draw: st.DrawFn) -> SheetCase:
         "kind": st.just("sheet"),
         "grips": st.fixed_dictionaries({}, optional={"bottom": grip, "top": grip}),
         "mesh": st.fixed_dictionaries(
-            {"size": st.just(size)}, optional={"corner_size": smaller, "grip_size": smaller}
+            {"size": st.just(size)},
+            optional={
+                "corner_size": smaller,
+                "grip_size": smaller,
+                "adapt": st.booleans(),
+                "accuracy": st.floats(1e-6, 0.1),
+                "accuracy_of": st.sampled_from(["force", "energy"]),
+            },
         ),
         "discretisation": st.fixed_dictionaries(
             {"degree": st.just(degree)},

@@ -72,6 +72,10 @@ def case_file(tmp_path: Path) -> Path:
         ),
         ("mesh", "corner_size", 0.02,
          "0.02 is not allowed; it must be at most mesh.size (0.00618182)"),
+        ("mesh", "adapt", 1, "1 is not allowed; it must be true or false"),
+        ("mesh", "accuracy", 1e-9, "1e-09 is not allowed; it must be from 1e-06 to 0.1"),
+        ("mesh", "accuracy_of", "moment",
+         '"moment" is not allowed; it must be "force" or "energy"'),
         ("mesh", "grip_size", 0.02,
          "0.02 is not allowed; it must be at most mesh.size (0.00618182)"),
         ("discretisation", "scheme", "argyris",
@@ -151,8 +155,8 @@ def test_missing_sections_and_keys() -> None:
 
 def test_a_value_in_place_of_a_section() -> None:
     assert problems(mesh="fine") == [
-        'mesh: "fine" is not allowed; it must be a section with the keys corner_size, file, '
-        "grip_size, size"
+        'mesh: "fine" is not allowed; it must be a section with the keys accuracy, accuracy_of, '
+        "adapt, corner_size, file, grip_size, size"
     ]
 
 
@@ -224,9 +228,9 @@ def test_a_missing_mesh_file(case_file: Path) -> None:
 def test_sizes_beside_a_mesh_file(tmp_path: Path) -> None:
     mesh = tmp_path / "x.msh"
     mesh.touch()
-    assert problems(mesh={"file": str(mesh), "size": 0.1, "grip_size": 0.1}) == [
-        "mesh.size: not allowed beside mesh.file, whose elements are used as they are",
-        "mesh.grip_size: not allowed beside mesh.file, whose elements are used as they are",
+    assert problems(mesh={"file": str(mesh), "size": 0.1, "grip_size": 0.1, "adapt": True}) == [
+        f"mesh.{key}: not allowed beside mesh.file, whose elements are used as they are"
+        for key in ("size", "grip_size", "adapt")
     ]
 
 
@@ -248,8 +252,8 @@ def test_bad_overrides(case_file: Path) -> None:
         f"  --set material.shear: {form}",
         "  --set sheet.width.x=1: sheet.width is not a section but 0.068; nothing can be set in it",
         f"  --set a..b=1: {form}",
-        '  mesh.sise: unknown key; did you mean "size"? Allowed here: corner_size, file, '
-        "grip_size, size",
+        '  mesh.sise: unknown key; did you mean "size"? Allowed here: accuracy, accuracy_of, '
+        "adapt, corner_size, file, grip_size, size",
     ]
 
 

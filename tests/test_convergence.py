@@ -77,8 +77,8 @@ def errors(size, degree, auxiliary_degree):
         problem.residual(x, 0.0, r)
         r.array[:] -= free * load_vector.array
 
-    def tangent(x, A):
-        problem.tangent(x, 0.0, A)
+    def tangent(x, A, origin):
+        problem.tangent(x, 0.0, A, origin)
 
     solver = NewtonSolver(residual, tangent, problem.matrix(), problem.typical_sizes, 1.0)
     result = solver.solve(problem.undeformed())

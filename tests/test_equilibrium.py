@@ -175,7 +175,7 @@ def test_load_rate_is_the_tangent_of_the_path(coarse_path, sabotage, scheme, hol
         discretisation={"scheme": scheme, "degree": 2},
     )
     before, here, after = (s for s in steps if s.load in (0.499, 0.5, 0.501))
-    sizes = simulation._equilibrium.typical_sizes
+    sizes = simulation.equilibrium.typical_sizes
     difference = (after.x - before.x) / 0.002 / sizes
     rate = sabotage * here.linearisation.rate / sizes
     error = np.abs(difference - rate).max() / np.abs(rate).max()
@@ -201,7 +201,7 @@ def test_work_of_the_grip_is_the_stored_energy(coarse_path, scheme, hold):
         discretisation={"scheme": scheme, "degree": 2},
     )
     near = {round(s.load, 6): s for s in steps}
-    equilibrium = simulation._equilibrium
+    equilibrium = simulation.equilibrium
     E = [sum(equilibrium.energies(near[t].x, t).values()) for t in (0.698, 0.699, 0.701, 0.702)]
     power = (E[0] - 8 * E[1] + 8 * E[2] - E[3]) / 0.012
     reaction = equilibrium.reactions(near[0.7].x, 0.7)[1]
@@ -221,7 +221,7 @@ def test_reactions_of_the_two_grips_balance(coarse_path, scheme, hold):
     simulation, steps = coarse_path(
         grips={"bottom": {"hold": hold}, "top": top}, discretisation={"scheme": scheme, "degree": 2}
     )
-    bottom, top = simulation._equilibrium.reactions(steps[-1].x, 1.0)
+    bottom, top = simulation.equilibrium.reactions(steps[-1].x, 1.0)
     f0, f1 = np.array(bottom.force), np.array(top.force)
     np.testing.assert_allclose(f0 + f1, 0.0, atol=1e-6 * np.abs(f1).max())
     arm = np.array([0.01, 0.224])
@@ -231,7 +231,7 @@ def test_reactions_of_the_two_grips_balance(coarse_path, scheme, hold):
 
 def test_inertia_is_that_of_the_dense_tangent(coarse_path):
     simulation, steps = coarse_path(mesh={"size": 0.034, "corner_size": 0.034})
-    equilibrium = simulation._equilibrium
+    equilibrium = simulation.equilibrium
     A = equilibrium.matrix()
     last = steps[-1]
     equilibrium.tangent(last.x, last.load, A)

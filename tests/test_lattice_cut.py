@@ -111,7 +111,7 @@ def test_no_node_is_loose(fibre_angle, spacing, pivots):
     equilibrium = LatticeEquilibrium(net)
     newton = NewtonSolver(
         lambda x, r: equilibrium.residual(x, 0.0, r),
-        lambda x, A: equilibrium.tangent(x, 0.0, A),
+        lambda x, A, _: equilibrium.tangent(x, 0.0, A),
         equilibrium.matrix(),
         equilibrium.typical_sizes,
         equilibrium.typical_energy,

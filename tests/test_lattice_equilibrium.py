@@ -27,7 +27,7 @@ def solve(equilibrium, loads, start=None):
     now = [0.0]
     newton = NewtonSolver(
         lambda x, r: equilibrium.residual(x, now[0], r),
-        lambda x, A: equilibrium.tangent(x, now[0], A),
+        lambda x, A, _: equilibrium.tangent(x, now[0], A),
         equilibrium.matrix(),
         equilibrium.typical_sizes,
         equilibrium.typical_energy,

@@ -30,7 +30,7 @@ class Saddle:
             x - y,
         ]
 
-    def tangent(self, z, A):
+    def tangent(self, z, A, origin=None):
         self.tangents += 1
         stiffness = self.k * self.l**2
         values = [[3 * self.k * z[0] ** 2, 0, 1], [0, stiffness, -1], [1, -1, 0]]

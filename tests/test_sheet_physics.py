@@ -75,7 +75,7 @@ def test_a_clamp_holds_the_gradient_at_its_rotation(coarse_path):
             "top": {"hold": "clamp", "translation": [0.0, 0.02], "rotation": angle},
         },
     )
-    equilibrium = simulation._equilibrium
+    equilibrium = simulation.equilibrium
     gradient = equilibrium.discretisation.field("gradient")
     F = np.eye(2) + steps[-1].x[gradient.dofs].reshape(-1, 2, 2)
     y = gradient.coordinates[:, 1]
@@ -90,7 +90,7 @@ def test_a_clamp_holds_the_gradient_at_its_rotation(coarse_path):
 
 def test_a_position_grip_leaves_the_gradient_free(coarse_path):
     simulation, steps = coarse_path(discretisation={"degree": 2})
-    gradient = simulation._equilibrium.discretisation.field("gradient")
+    gradient = simulation.equilibrium.discretisation.field("gradient")
     H_top = steps[-1].x[gradient.dofs][np.abs(gradient.coordinates[:, 1] - H) < 1e-9]
     assert np.abs(H_top).max() > 0.05
 

@@ -14,7 +14,7 @@ from ..continuum.held_directions import HeldDirections
 from ..physics.kinematics import Expr, direction_angle, fibre
 from ..physics.reaction import Reaction
 from ..physics.rigid_motion import RigidMotion
-from ..schemes import Discretisation
+from ..schemes import Discretisation, StiffEnergy
 from .domain import ENDS, Axis
 
 Array = NDArray[np.float64]
@@ -69,12 +69,14 @@ class EndSupport:
         measure = ufl.Measure("ds", domain=axis.mesh, subdomain_data=axis.tags)(tag)
         self._load = fem.Constant(axis.mesh, 0.0)
         self.stored: dict[str, ufl.Form] = {}
+        self.stiff: list[StiffEnergy] = []
         self.potential: ufl.Form | None = None
         self.pull: ufl.Form | None = None
         self._direction: HeldDirections | None = None
         if conditions.clamp:
             self._direction = HeldDirections(discretisation, axis.tags, tag, conditions.motion)
             self.stored["bending"] = self._direction.stored
+            self.stiff = self._direction.stiff
             self.pull = self._direction.pull
         self._add_dead_loads(discretisation, axis, measure)
 

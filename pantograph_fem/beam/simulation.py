@@ -10,6 +10,7 @@ from ..case import BeamCase
 from ..continuum.equilibrium import ContinuumEquilibrium
 from ..continuum.probes import Probes
 from ..continuum.sampling import FieldSampler
+from ..continuum.weights import displacement_weights
 from ..reporting import TIP_COLUMNS, history_row, tip_columns
 from ..results.fields import FieldGrid
 from ..simulation import Observation
@@ -46,7 +47,11 @@ class BeamSimulation:
         self._equilibrium = ContinuumEquilibrium(discretisation, supports, clock, check)
         options = case.continuation
         self.path = NewtonPath(
-            self._equilibrium, NewtonSettings(options.tolerance, options.max_iterations), clock
+            self._equilibrium,
+            NewtonSettings(options.tolerance, options.max_iterations),
+            clock,
+            displacement_weights(discretisation, axis.mesh),
+            case.output.eigenvalues,
         )
         self.cells = int(axis.mesh.topology.index_map(1).size_global)
         self.dofs = {field.name: field.size for field in discretisation.fields}
@@ -64,6 +69,12 @@ class BeamSimulation:
             return None
         numbers = np.arange(len(self._nodes))
         return FieldGrid(self._nodes, np.column_stack([numbers[:-1], numbers[1:]]))
+
+    def displacement(self, x: Array, load: float) -> Array | None:
+        """Displacement along the axis on rank 0, None elsewhere; a collective call."""
+        self._equilibrium.load_state(x, load)
+        fields = self._sampler.sample()
+        return None if fields is None else fields["displacement"][self._order]
 
     def observe(self, step: Step) -> Observation | None:
         """Numbers and fields of a state on rank 0, None elsewhere; a collective call."""

@@ -61,6 +61,13 @@ class Continuation(Part):
         Largest remaining error of a Newton solve, relative to the typical size of each unknown.
     predictor
         First guess of a step: along the tangent, along the last secant, or the last state.
+    method
+        Steps in load, or in length along the path, which pass points where the load turns back.
+    max_steps
+        Steps after which a path that is followed along its arc is given up.
+    on_instability
+        Where a path loses stability: go on, end there, or go on along the stable path that
+        branches off.
     """
 
     stops: Annotated[tuple[float, ...], BeforeValidator(_stops)] = (1.0,)
@@ -74,6 +81,9 @@ class Continuation(Part):
     max_iterations: int = Field(default=15, ge=1)
     tolerance: float = Field(default=1e-8, ge=1e-13, le=1e-3)
     predictor: Literal["tangent", "secant", "none"] = "tangent"
+    method: Literal["load", "arc_length"] = "load"
+    max_steps: int = Field(default=1000, ge=1)
+    on_instability: Literal["follow", "stop", "branch"] = "follow"
 
     @model_validator(mode="after")
     def _ordered_steps(self) -> Continuation:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Literal
 
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
@@ -20,6 +21,9 @@ CORNER_SIZE_OVER_SIZE = 1 / 40
 #: Default size along the grips when one is a clamp, over the shorter side: 1 mm for the sheet of
 #: the paper, whose clamps make layers of thickness sqrt(K_b/K_e) = 0.38 mm.
 CLAMP_SIZE_OVER_SIDE = 1 / 68
+#: These three, and those of the first of a series of meshes: coarse, as finer ones follow.
+DEFAULTS = (SIZE_OVER_SIDE, CORNER_SIZE_OVER_SIZE, CLAMP_SIZE_OVER_SIDE)
+FIRST_DEFAULTS = (1 / 6, 1 / 20, 1 / 34)
 #: Smallest size at corners and grips, over the size inside; far beyond it gmsh fails.
 SMALLEST_RATIO = 1e-4
 
@@ -38,6 +42,13 @@ class Mesh(Part):
         Element size at the four corners, where the solution is singular, m.
     grip_size
         Element size along the two grips, m; None: no refinement along them.
+    adapt
+        Whether the mesh is refined where the solution needs it until the force or the energy at
+        full load is accurate; the sizes are then those of the first mesh, coarser by default.
+    accuracy
+        Relative error that is aimed at.
+    accuracy_of
+        Of what: "force", the top grip's, or the stored "energy".
     file
         Mesh with the physical groups bottom and top, absolute; a relative path in a case file
         starts from the folder of that file.
@@ -46,6 +57,9 @@ class Mesh(Part):
     size: float | None = Field(default=None, gt=0)
     corner_size: float | None = Field(default=None, gt=0)
     grip_size: float | None = Field(default=None, gt=0)
+    adapt: bool = False
+    accuracy: float = Field(default=1e-3, ge=1e-6, le=0.1)
+    accuracy_of: Literal["force", "energy"] = "force"
     file: Path | None = None
 
     @field_validator("file", mode="before")
@@ -64,10 +78,11 @@ class Mesh(Part):
 
     @model_validator(mode="after")
     def _file_or_sizes(self) -> Mesh:
-        sizes = [key for key in ("size", "corner_size", "grip_size") if getattr(self, key)]
-        if self.file and sizes:
+        given = ("size", "corner_size", "grip_size", "adapt")
+        wrong = [key for key in given if getattr(self, key)]
+        if self.file and wrong:
             text = "not allowed beside mesh.file, whose elements are used as they are"
-            raise problem_error(*(Problem(text, (key,)) for key in sizes))
+            raise problem_error(*(Problem(text, (key,)) for key in wrong))
         return self
 
     def with_defaults(self, sheet: Sheet, grips: Grips) -> Mesh:
@@ -75,11 +90,12 @@ class Mesh(Part):
         if self.file:
             return self
         side = min(sheet.width, sheet.height)
-        size = self.size or SIZE_OVER_SIDE * side
-        corner_size = self.corner_size or CORNER_SIZE_OVER_SIZE * size
+        over_side, over_size, clamp_over_side = FIRST_DEFAULTS if self.adapt else DEFAULTS
+        size = self.size or over_side * side
+        corner_size = self.corner_size or over_size * size
         grip_size = self.grip_size
         if grip_size is None and grips.clamped:
-            grip_size = max(min(size, CLAMP_SIZE_OVER_SIDE * side), SMALLEST_RATIO * size)
+            grip_size = max(min(size, clamp_over_side * side), SMALLEST_RATIO * size)
         problems = [
             Problem(not_allowed(value, f"be at most mesh.size ({size:.6g})"), (key,))
             for key, value in (("corner_size", corner_size), ("grip_size", grip_size))

@@ -28,6 +28,8 @@ class Output(Part):
         Reference points whose displacement goes to the history, m.
     fields
         States whose fields are saved: at all accepted steps, at the stops, or none.
+    eigenvalues
+        Whether the lowest eigenvalue of the tangent and its mode are found at every state.
     figures
         Whether figures are drawn.
     line_spacing
@@ -37,6 +39,7 @@ class Output(Part):
 
     probes: Annotated[tuple[Point, ...], BeforeValidator(_list)] = ()
     fields: Literal["all", "stops", "none"] = "all"
+    eigenvalues: bool = False
     figures: bool = True
     line_spacing: float = Field(default=0.0048, gt=0)
 

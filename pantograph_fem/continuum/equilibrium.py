@@ -16,6 +16,7 @@ from dolfinx import fem
 from .. import dolfinx_api as api
 from ..physics.reaction import Reaction
 from ..schemes import Discretisation
+from ..solve.origin import Origin
 from ..stopwatch import Stopwatch
 from .support import Support
 
@@ -66,7 +67,13 @@ class ContinuumEquilibrium:
         self._potential = api.form(functional)
         residual = ufl.derivative(functional, self._state)
         self._residual = api.form(residual)
-        self._tangent = api.form(ufl.derivative(residual, self._state))
+        space = self._state.function_space
+        self._origin, self._step = fem.Function(space), fem.Function(space)
+        tangent = ufl.derivative(residual, self._state)
+        self._stiff = (*d.stiff, *(part for support in self.supports for part in support.stiff))
+        for part in self._stiff:
+            tangent += part.correction(self._state, self._origin, self._step)
+        self._tangent = api.form(tangent)
         self._energies = {name: api.form(energy) for name, energy in energies.items()}
         pulls = [support.pull for support in self.supports if support.pull is not None]
         self._pull = api.form(ufl.derivative(sum(pulls), self._state)) if pulls else None
@@ -90,6 +97,11 @@ class ContinuumEquilibrium:
     def has_minima(self) -> bool:
         """Yes, but for multipliers."""
         return self.discretisation.multiplier_dofs == 0
+
+    @property
+    def extrapolates(self) -> bool:
+        """Whether there are stresses to extrapolate."""
+        return bool(self._stiff)
 
     def matrix(self) -> PETSc.Mat:
         """A matrix for the tangent, of which it holds the upper half."""
@@ -122,15 +134,21 @@ class ContinuumEquilibrium:
             r.array[:] = self._vector.array[: self._owned]
             r.array[self._owned_dofs] = 0.0
 
-    def tangent(self, x: Array, load: float, A: PETSc.Mat) -> None:
-        """Derivative of the residual; rows and columns of held dofs are the identity's."""
+    def tangent(self, x: Array, load: float, A: PETSc.Mat, origin: Origin | None = None) -> None:
+        """Derivative of the residual; rows and columns of held dofs are the identity's.
+
+        With an origin the stresses are those extrapolated from there: see
+        :mod:`pantograph_fem.schemes.stiff`.
+        """
         with self._clock("assemble"):
+            self._extrapolate(origin or Origin(x, np.zeros_like(x)))
             self.load_state(x, load)
             api.assemble_matrix(A, self._tangent, self._bcs)
 
     def load_rate(self, x: Array, load: float) -> Array:
         """Right side whose solution with the tangent is dx/dload along the path."""
         with self._clock("assemble"):
+            self._extrapolate(Origin(x, np.zeros_like(x)))
             self.load_state(x, load)
             self._data.x.array[:] = 0.0
             for support in self.supports:
@@ -182,6 +200,11 @@ class ContinuumEquilibrium:
         self._state.x.scatter_forward()
         for support in self.supports:
             support.move(load)
+
+    def _extrapolate(self, origin: Origin) -> None:
+        for function, values in ((self._origin, origin.x), (self._step, origin.step)):
+            function.x.array[: self._owned] = values
+            function.x.scatter_forward()
 
     def _work(self, support: Support, virtual: Array) -> float:
         mine = support.dofs < self._owned

@@ -23,7 +23,7 @@ from dolfinx import fem, mesh
 from .. import dolfinx_api as api
 from ..physics.kinematics import angle_between, fibre
 from ..physics.rigid_motion import RigidMotion
-from ..schemes import Discretisation, hinge_stiffness, integration
+from ..schemes import Discretisation, StiffEnergy, hinge_stiffness, integration
 
 
 class HeldDirections:
@@ -33,6 +33,8 @@ class HeldDirections:
     ----------
     stored
         The hinge's energy, J.
+    stiff
+        The same, for tangents that extrapolate its stresses.
     pull
         Form -∂Π/∂load, J; None where the motion does not turn.
     """
@@ -49,11 +51,15 @@ class HeldDirections:
         stiffness = hinge_stiffness(domain, discretisation.curvature_degree)
         n = ufl.FacetNormal(domain)
         stored, couple = 0, 0
+        self.stiff: list[StiffEnergy] = []
         for family, K_b in energy.bending:
             D = energy.directions[family]
             held = ufl.dot(self._rotation, fibre(energy.reference, D))
             J = angle_between(held, fibre(F, D))
-            moment, q = K_b * discretisation.curvatures[family], ufl.dot(D, n)
+            kappa, q = discretisation.curvatures[family], ufl.dot(D, n)
+            moment = K_b * kappa
+            rows = ((None, -K_b * q), (-K_b * q, K_b * stiffness * q**2))
+            self.stiff.append(StiffEnergy((kappa, J), rows, ds))
             stored += -moment * q * J + 0.5 * K_b * stiffness * (q * J) ** 2
             couple += moment * q - K_b * stiffness * q**2 * J
         self.stored = stored * ds

@@ -9,6 +9,7 @@ import ufl
 from numpy.typing import NDArray
 
 from ..physics.reaction import Reaction
+from ..schemes import StiffEnergy
 
 Array = NDArray[np.float64]
 
@@ -24,6 +25,8 @@ class Support(Protocol):
         Held dofs of the state, ghosts included.
     stored
         Terms of the stored energy that hold a direction weakly, by effect; J.
+    stiff
+        The parts of it whose stresses a tangent extrapolates.
     potential
         Potential of the dead loads, J; None without.
     pull
@@ -32,6 +35,7 @@ class Support(Protocol):
 
     dofs: NDArray[np.int32]
     stored: dict[str, ufl.Form]
+    stiff: list[StiffEnergy]
     potential: ufl.Form | None
     pull: ufl.Form | None
 

@@ -12,6 +12,7 @@ from petsc4py import PETSc
 
 from ..physics.reaction import NO_REACTION, Reaction
 from ..physics.rigid_motion import RigidMotion
+from ..solve.origin import Origin
 from ..stopwatch import Stopwatch
 from .assembly import TangentRows
 from .end_load import EndLoad
@@ -104,6 +105,11 @@ class LatticeEquilibrium:
         """Yes, but for dead couples: their work is that of an angle, which is many-valued."""
         return not self._couples.any()
 
+    @property
+    def extrapolates(self) -> bool:
+        """No."""
+        return False
+
     def matrix(self) -> PETSc.Mat:
         """An empty matrix for the tangent."""
         return self._rows.matrix(self._comm)
@@ -129,7 +135,7 @@ class LatticeEquilibrium:
             out_of_balance = self._own(self._gradient(self._part, self.gather(x), load))
             r.array[:] = np.where(self._own_held, 0.0, out_of_balance)
 
-    def tangent(self, x: Array, load: float, A: PETSc.Mat) -> None:
+    def tangent(self, x: Array, load: float, A: PETSc.Mat, origin: Origin | None = None) -> None:
         """Derivative of the residual; rows and columns of held unknowns are the identity's."""
         with self._clock("assemble"):
             u = self.gather(x)

@@ -48,7 +48,11 @@ class NetSimulation:
         )
         options = case.continuation
         self.path = NewtonPath(
-            self._equilibrium, NewtonSettings(options.tolerance, options.max_iterations), clock
+            self._equilibrium,
+            NewtonSettings(options.tolerance, options.max_iterations),
+            clock,
+            np.full_like(self._equilibrium.typical_sizes, 1.0 / problem.net.size),
+            case.output.eigenvalues,
         )
         self.cells = len(problem.net.links)
         self.dofs = {"displacement": 2 * problem.net.size}
@@ -63,6 +67,11 @@ class NetSimulation:
         """Nodes and links on rank 0, None elsewhere."""
         net = self._problem.net
         return FieldGrid(net.nodes, net.links) if self._comm.rank == 0 else None
+
+    def displacement(self, x: Array, load: float) -> Array | None:
+        """Displacement of the nodes on rank 0, None elsewhere; a collective call."""
+        u = self._equilibrium.gather(x)
+        return u if self._comm.rank == 0 else None
 
     def observe(self, step: Step) -> Observation | None:
         """Numbers and fields of a state on rank 0, None elsewhere; a collective call."""

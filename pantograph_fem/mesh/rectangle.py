@@ -3,16 +3,23 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
+from types import ModuleType
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pantograph_fem.errors import CaseError
 from pantograph_fem.mesh.gmsh_session import gmsh_model
+from pantograph_fem.mesh.size_field import SizeField
 from pantograph_fem.mesh.triangulation import Triangulation, boundary_edges
 
 #: Increase of the element size per distance from a corner or a grip.
 GROWTH = 0.25
+
+#: Adds a size field to the current model of gmsh; the value is its tag, valid in the context.
+AddField = Callable[[ModuleType], AbstractContextManager[int]]
 
 
 def rectangle(
@@ -65,12 +72,47 @@ def rectangle(
     if top is not None and not mirrored_in_y:
         field = f"Min({field},{top}+{GROWTH}*({h}-y))"
 
-    points, triangles = _mesh_box(w / 2, h / 2 if mirrored_in_y else h, field)
+    points, triangles = _mesh_box(w / 2, h / 2 if mirrored_in_y else h, _formula(field))
     points *= (width / 2, height / 2 if mirrored_in_y else height)
     points, triangles = _mirror(points, triangles, 0, width / 2)
     if mirrored_in_y:
         points, triangles = _mirror(points, triangles, 1, height / 2)
+    return _sheet(points, triangles, height)
 
+
+def rectangle_by_sizes(width: float, height: float, sizes: SizeField) -> Triangulation:
+    """Mesh the rectangle [0, width] x [0, height] with sizes given on its lower left quarter.
+
+    The other quarters are mirror images of that one, to round-off. Equal arguments give equal
+    meshes.
+
+    Parameters
+    ----------
+    width, height
+        Sides of the sheet, in any unit of length.
+    sizes
+        Element sizes on [0, width/2] x [0, height/2], in the same unit.
+
+    Raises
+    ------
+    CaseError
+        If a size is not a positive number.
+    """
+    if not (np.isfinite(sizes.sizes).all() and (sizes.sizes > 0.0).all()):
+        raise CaseError("mesh: every element size must be a positive length")
+    unit = max(width, height)
+    box = width / unit / 2, height / unit / 2
+    points, triangles = _mesh_box(*box, sizes.scaled(1.0 / unit).in_gmsh)
+    points *= (width / 2, height / 2)
+    points, triangles = _mirror(points, triangles, 0, width / 2)
+    points, triangles = _mirror(points, triangles, 1, height / 2)
+    return _sheet(points, triangles, height)
+
+
+def _sheet(
+    points: NDArray[np.float64], triangles: NDArray[np.int64], height: float
+) -> Triangulation:
+    """The mesh with its grips, the edges at y = 0 and at y = height."""
     boundary = boundary_edges(triangles)
     y = points[boundary, 1]
     edges = {
@@ -105,17 +147,26 @@ def _rounded(value: float) -> float:
     return float(f"{value:.12g}")
 
 
+def _formula(formula: str) -> AddField:
+    """The size field of a formula in x and y."""
+
+    @contextmanager
+    def add(gmsh: ModuleType) -> Iterator[int]:
+        tag = gmsh.model.mesh.field.add("MathEval")
+        gmsh.model.mesh.field.setString(tag, "F", formula)
+        yield tag
+
+    return add
+
+
 def _mesh_box(
-    width: float, height: float, field: str
+    width: float, height: float, field: AddField
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Mesh [0, width] x [0, height] with a size field; points in fractions of the two sides."""
-    with gmsh_model() as gmsh:
+    with gmsh_model() as gmsh, field(gmsh) as tag:
         gmsh.model.occ.addRectangle(0.0, 0.0, 0.0, width, height)
         gmsh.model.occ.synchronize()
-        sizes = gmsh.model.mesh.field
-        tag = sizes.add("MathEval")
-        sizes.setString(tag, "F", field)
-        sizes.setAsBackgroundMesh(tag)
+        gmsh.model.mesh.field.setAsBackgroundMesh(tag)
         gmsh.model.mesh.generate(2)
         node_tags, coordinates, _ = gmsh.model.mesh.getNodes()
         _, corner_tags = gmsh.model.mesh.getElementsByType(

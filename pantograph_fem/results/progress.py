@@ -75,16 +75,17 @@ class Progress:
             )
             self._bar.update(self._task, completed=row.load, state=state)
         else:
-            self._line(
+            self.note(
                 f"step {row.step}  load {row.load:.4f}  iterations {row.newton_iterations}"
                 f"  {force}  energy {row.energy:.4g} J{warning}"
             )
 
     def rejected(self, load: float, step: float, reason: str) -> None:
         """Show that the load was not reached with a step of this size, and why."""
-        self._line(f"cut back: load {load:.4f} not reached with a step of {step:.3g}: {reason}")
+        self.note(f"cut back: load {load:.4f} not reached with a step of {step:.3g}: {reason}")
 
-    def _line(self, text: str) -> None:
+    def note(self, text: str) -> None:
+        """Show a line of text."""
         if self._quiet:
             return
         if self._bar:

@@ -5,12 +5,15 @@ from __future__ import annotations
 import json
 import platform
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from importlib import metadata
 from pathlib import Path
 
 from .atomic import replace_text
 from .history import HistoryRow
+
+DONE = "done"
+CRITICAL = "stopped at a critical load"
 
 PHASES = ("mesh", "compile", "assemble", "solve", "output", "total")
 
@@ -36,6 +39,8 @@ def write_summary(
     seconds: Mapping[str, float],
     versions: Mapping[str, str],
     message: str = "",
+    accuracy: Mapping[str, object] | None = None,
+    critical_points: Sequence[Mapping[str, object]] = (),
 ) -> None:
     """Write ``summary.json`` in one step, so that it is never half a file.
 
@@ -44,7 +49,8 @@ def write_summary(
     path
         The file.
     status
-        "done", or "stopped: " and the reason.
+        "done", "stopped at a critical load" where that was asked for, or "stopped: " and the
+        reason.
     last
         The last accepted state, None if there was none; written with the columns of
         ``history.csv``.
@@ -58,17 +64,22 @@ def write_summary(
         Version by package, as `package_versions` returns them.
     message
         What the user was told at the end.
+    accuracy
+        What was asked of an adapted mesh and what it reached; None, and left out, for others.
+    critical_points
+        Step, load and kind of each critical point; left out where there is none.
 
     Raises
     ------
     ValueError
         If the status or a phase is none of those above.
     """
-    if status != "done" and not status.startswith("stopped: "):
-        raise ValueError(f'status is {status!r}; allowed are "done" and "stopped: <reason>"')
+    if status not in (DONE, CRITICAL) and not status.startswith("stopped: "):
+        allowed = f'"{DONE}", "{CRITICAL}" and "stopped: <reason>"'
+        raise ValueError(f"status is {status!r}; allowed are {allowed}")
     if unknown := set(seconds) - set(PHASES):
         raise ValueError(f"unknown phases {sorted(unknown)}; allowed are {', '.join(PHASES)}")
-    summary = {
+    summary: dict[str, object] = {
         "status": status,
         "message": message,
         "last": None if last is None else last.columns(),
@@ -77,6 +88,10 @@ def write_summary(
         "seconds": {phase: round(float(seconds.get(phase, 0.0)), 3) for phase in PHASES},
         "versions": dict(versions),
     }
+    if accuracy is not None:
+        summary["accuracy"] = dict(accuracy)
+    if critical_points:
+        summary["critical_points"] = [dict(point) for point in critical_points]
     replace_text(path, json.dumps(summary, indent=2, ensure_ascii=False) + "\n")
 
 

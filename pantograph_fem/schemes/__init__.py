@@ -5,11 +5,13 @@ from .discretisation import Discretisation, Scales, integration
 from .first_gradient import first_gradient
 from .hinge import hinge, hinge_stiffness
 from .micromorphic import micromorphic
+from .stiff import StiffEnergy
 
 __all__ = [
     "Discretisation",
     "Scales",
     "SchemeName",
+    "StiffEnergy",
     "discretise",
     "first_gradient",
     "hinge",

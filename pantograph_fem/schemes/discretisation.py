@@ -12,6 +12,7 @@ from dolfinx import fem, mesh
 from ..physics.energy import FibreEnergy
 from ..physics.kinematics import Expr, fibre
 from .field import Field
+from .stiff import StiffEnergy
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,8 @@ class Discretisation:
         Form whose first variation vanishes at equilibrium, J.
     stored
         Stored energy of each effect as it is discretised, J.
+    stiff
+        The parts of it whose stresses a tangent extrapolates.
     energy
         The continuum energy that was discretised.
     densities
@@ -73,6 +76,7 @@ class Discretisation:
     fields: tuple[Field, ...]
     functional: ufl.Form
     stored: dict[str, ufl.Form]
+    stiff: tuple[StiffEnergy, ...]
     energy: FibreEnergy
     densities: dict[str, Expr]
     displacement: Expr

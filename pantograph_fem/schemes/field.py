@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from dolfinx import fem
 
@@ -59,11 +60,23 @@ def fields_of(
     fields = []
     for index, (name, size) in enumerate(typical.items()):
         if space.num_sub_spaces and len(typical) > 1:
-            own, dofs = space.sub(index).collapse()
+            own, dofs = _part(space, index)
         else:
             own = space
-            dofs = np.arange(api.local_size(space))
-        block_size = own.dofmap.index_map_bs
-        place = np.asarray(dofs, dtype=np.int32).reshape(-1, block_size)
-        fields.append(Field(name, own, place, size, name in multipliers))
+            dofs = np.arange(api.local_size(space), dtype=np.int32)
+            dofs = dofs.reshape(-1, own.dofmap.index_map_bs)
+        fields.append(Field(name, own, dofs, size, name in multipliers))
     return tuple(fields)
+
+
+def _part(space: fem.FunctionSpace, index: int) -> tuple[fem.FunctionSpace, NDArray[np.int32]]:
+    """A space like one part of a mixed space, and the dofs of that part by its blocks.
+
+    The part itself, collapsed, will not do: in dolfinx 0.5 it takes the two nodes of a cubic edge
+    for one another where the edge runs the other way in a neighbour. Its coordinates are right.
+    """
+    part, dofs = space.sub(index).collapse()
+    own = api.functionspace(space.mesh, part.ufl_element())
+    places = cKDTree(part.tabulate_dof_coordinates())
+    _, blocks = places.query(own.tabulate_dof_coordinates())
+    return own, np.asarray(dofs, dtype=np.int32).reshape(-1, own.dofmap.index_map_bs)[blocks]

@@ -13,6 +13,7 @@ from .. import dolfinx_api as api
 from ..physics.energy import FibreEnergy
 from .discretisation import Discretisation, Scales, integration
 from .field import fields_of
+from .stiff import stretching
 
 
 def first_gradient(
@@ -26,9 +27,8 @@ def first_gradient(
     """Discretise an energy without curvature; the only unknown is u in P(degree)."""
     space = api.functionspace(domain, api.lagrange(degree, (2,), domain))
     u = fem.Function(space, name="state")
-    densities = energy.displacement_densities(u) | energy.first_gradient_densities(
-        energy.reference + ufl.grad(u)
-    )
+    F = energy.reference + ufl.grad(u)
+    densities = energy.displacement_densities(u) | energy.first_gradient_densities(F)
     dx = integration("dx", quadrature_degree)
     stored = {name: density * dx for name, density in densities.items()}
     return Discretisation(
@@ -36,6 +36,7 @@ def first_gradient(
         fields=fields_of(space, {"displacement": scales.length}),
         functional=sum(stored.values()),
         stored=stored,
+        stiff=tuple(stretching(energy, F, dx)),
         energy=energy,
         densities=densities,
         displacement=u,

@@ -26,6 +26,7 @@ from ..physics.energy import FibreEnergy
 from ..physics.kinematics import Expr, angle_between, fibre
 from .discretisation import Discretisation, Scales, integration
 from .field import fields_of
+from .stiff import StiffEnergy, bending, stretching
 
 
 def trace_constant(domain: mesh.Mesh, degree: int) -> Expr:
@@ -81,18 +82,23 @@ def hinge(
     stiffness = ufl.avg(hinge_stiffness(domain, degree - 2))
     n = ufl.FacetNormal(domain)
     kappas = energy.curvatures(F)
+    stiff = [*stretching(energy, F, dx), *bending(energy, F, dx)]
     for family, K_b in energy.bending:
         D = energy.directions[family]
         a = fibre(F, D)
         J = angle_between(a("+"), a("-"))
         q = ufl.dot(D, n("+"))
-        closing = K_b * ufl.avg(kappas[family]) * q * J + 0.5 * K_b * stiffness * (q * J) ** 2
+        kappa = ufl.avg(kappas[family])
+        closing = K_b * kappa * q * J + 0.5 * K_b * stiffness * (q * J) ** 2
         stored["bending"] += closing * dS
+        rows = ((None, K_b * q), (K_b * q, K_b * stiffness * q**2))
+        stiff.append(StiffEnergy((kappa, J), rows, dS))
     return Discretisation(
         state=u,
         fields=fields_of(space, {"displacement": scales.length}),
         functional=sum(stored.values()),
         stored=stored,
+        stiff=tuple(stiff),
         energy=energy,
         densities=densities,
         displacement=u,

@@ -57,10 +57,10 @@ def micromorphic(
     space = api.functionspace(domain, api.mixed([vector, tensor, tensor]))
     state = fem.Function(space, name="state")
     u, H, Lambda = ufl.split(state)
-    bent = energy.reference + H
+    F, bent = energy.reference + ufl.grad(u), energy.reference + H
     densities = (
         energy.displacement_densities(u)
-        | energy.first_gradient_densities(energy.reference + ufl.grad(u))
+        | energy.first_gradient_densities(F)
         | energy.second_gradient_densities(bent)
     )
     gap = ufl.grad(u) - H
@@ -81,6 +81,7 @@ def micromorphic(
         ),
         functional=(sum(densities.values()) + ufl.inner(Lambda, gap)) * dx,
         stored=stored,
+        stiff=(),  # stresses extrapolate by themselves where there is a multiplier
         energy=energy,
         densities=densities,
         displacement=u,

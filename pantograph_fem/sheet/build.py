@@ -19,9 +19,14 @@ from .domain import GRIPS, Domain, distribute
 from .grip import Grip
 
 
-def build_domain(case: SheetCase, comm: MPI.Comm) -> Domain:
-    """Mesh the sheet, or read its mesh, and distribute it; a collective call."""
-    return distribute(comm, at_root(comm, lambda: triangulate(case)))
+def build_domain(
+    case: SheetCase, comm: MPI.Comm, triangulation: Triangulation | None = None
+) -> Domain:
+    """Mesh the sheet, or read its mesh, and distribute it; a collective call.
+
+    A `triangulation` on rank 0 takes the place of the one that the case asks for.
+    """
+    return distribute(comm, at_root(comm, lambda: triangulation or triangulate(case)))
 
 
 def triangulate(case: SheetCase) -> Triangulation:

@@ -13,7 +13,7 @@ from dolfinx import mesh
 from ..continuum.held_directions import HeldDirections
 from ..physics.reaction import NO_REACTION, Reaction
 from ..physics.rigid_motion import QUARTER_TURN, RigidMotion
-from ..schemes import Discretisation
+from ..schemes import Discretisation, StiffEnergy
 
 Array = NDArray[np.float64]
 
@@ -62,6 +62,7 @@ class GripSupport:
         gradient = discretisation.field("gradient")
         self._directions: HeldDirections | None = None
         self.stored: dict[str, ufl.Form] = {}
+        self.stiff: list[StiffEnergy] = []
         self.pull: ufl.Form | None = None
         if grip.clamp and gradient is not None:
             blocks = gradient.blocks_on(facets)
@@ -70,6 +71,7 @@ class GripSupport:
         elif grip.clamp:
             self._directions = HeldDirections(discretisation, grip.tags, grip.tag, grip.motion)
             self.stored["bending"] = self._directions.stored
+            self.stiff = self._directions.stiff
             self.pull = self._directions.pull
         self.dofs = np.concatenate([part.ravel() for part in dofs])
 

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 from mpi4py import MPI
 
 from ..case import SheetCase
 from ..continuum.equilibrium import ContinuumEquilibrium
 from ..continuum.probes import Probes
 from ..continuum.sampling import FieldSampler
+from ..continuum.weights import displacement_weights
+from ..mesh import Triangulation
+from ..physics.reaction import Reaction
 from ..reporting import history_row
 from ..results.fields import FieldGrid
 from ..simulation import Observation
 from ..solve.continuation import Array, Step
-from ..solve.newton import NewtonSettings
+from ..solve.newton_settings import NewtonSettings
 from ..solve.path import NewtonPath
 from ..stopwatch import Stopwatch
 from .build import build_domain, build_grips, discretise_sheet
@@ -28,23 +33,33 @@ class SheetSimulation:
 
     extra_columns: tuple[str, ...] = ()
 
-    def __init__(self, case: SheetCase, comm: MPI.Comm, clock: Stopwatch) -> None:
-        """Mesh the sheet and compile its forms; a collective call."""
+    def __init__(
+        self,
+        case: SheetCase,
+        comm: MPI.Comm,
+        clock: Stopwatch,
+        triangulation: Triangulation | None = None,
+    ) -> None:
+        """Mesh the sheet and compile its forms; a collective call.
+
+        A `triangulation` on rank 0 takes the place of the one that the case asks for.
+        """
+        self._clock = clock
         with clock("mesh"):
-            domain = build_domain(case, comm)
+            domain = build_domain(case, comm, triangulation)
         with clock("compile"):
             discretisation = discretise_sheet(case, domain)
-            self._sampler = FieldSampler(
-                discretisation, domain.mesh, sheet_observables(discretisation)
-            )
+        self._domain = domain.mesh
         self._probes = Probes(discretisation, domain.mesh, case.output.probes)
         supports = [GripSupport(grip, discretisation) for grip in build_grips(case, domain)]
-        self._equilibrium = ContinuumEquilibrium(discretisation, supports, clock)
+        self.equilibrium = ContinuumEquilibrium(discretisation, supports, clock)
         options = case.continuation
         self.path = NewtonPath(
-            self._equilibrium,
+            self.equilibrium,
             NewtonSettings(options.tolerance, options.max_iterations),
             clock,
+            displacement_weights(discretisation, domain.mesh),
+            case.output.eigenvalues,
         )
         self.cells = int(domain.mesh.topology.index_map(2).size_global)
         self.dofs = {field.name: field.size for field in discretisation.fields}
@@ -52,17 +67,34 @@ class SheetSimulation:
     @property
     def start(self) -> Array:
         """The state of rest."""
-        return self._equilibrium.undeformed()
+        return self.equilibrium.undeformed()
+
+    @cached_property
+    def _sampler(self) -> FieldSampler:
+        """Only where fields are looked at: most meshes on the way to a better one are not."""
+        discretisation = self.equilibrium.discretisation
+        with self._clock("compile"):
+            return FieldSampler(discretisation, self._domain, sheet_observables(discretisation))
 
     def grid(self) -> FieldGrid | None:
         """Nodes of the fields on rank 0, None elsewhere; a collective call."""
         grid = self._sampler.grid()
         return None if grid is None else FieldGrid(*grid)
 
+    def reaction(self, x: Array, load: float) -> Reaction:
+        """What the top grip exerts; a collective call."""
+        return self.equilibrium.reactions(x, load)[_REPORTED]
+
+    def displacement(self, x: Array, load: float) -> Array | None:
+        """Displacement on the nodes of the fields on rank 0, None elsewhere; a collective call."""
+        self.equilibrium.load_state(x, load)
+        fields = self._sampler.sample()
+        return None if fields is None else fields["displacement"]
+
     def observe(self, step: Step) -> Observation | None:
         """Numbers and fields of a state on rank 0, None elsewhere; a collective call."""
-        reaction = self._equilibrium.reactions(step.x, step.load)[_REPORTED]
-        energies = self._equilibrium.energies(step.x, step.load)
+        reaction = self.reaction(step.x, step.load)
+        energies = self.equilibrium.energies(step.x, step.load)
         probes = self._probes.displacements()
         fields = self._sampler.sample()
         if fields is None:

@@ -1,64 +1,38 @@
 """Load continuation: follow an equilibrium path from stop to stop.
 
-It knows the problem by :class:`Equilibrium` alone.
+It knows the problem by :class:`Equilibrium` alone, and where critical points are looked for by
+:class:`ModalEquilibrium`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass
-from typing import Protocol
-
-import numpy as np
-from numpy.typing import NDArray
 
 from ..errors import PathError
+from .critical import CriticalPoint, JumpError
+from .equilibrium import (
+    Array,
+    Correction,
+    Equilibrium,
+    Linearisation,
+    ModalEquilibrium,
+)
+from .instability import Change, OnInstability, critical_point, leave
 from .predictor import PathPoint, PredictorName, predict
 from .step_size import StepSettings, StepSize
 
-Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Correction:
-    """Outcome of a corrector: the state where it converged, why not where it did not."""
-
-    load: float
-    x: Array
-    converged: bool
-    iterations: int
-    reason: str
-
-
-@dataclass(frozen=True)
-class Linearisation:
-    """A state, the tangent of the path there, and its inertia.
-
-    `x` is the state given, corrected once more.
-    `expected_negative_pivots` is what a stable state has; more of them, or zero pivots, mean
-    that the energy is not at a minimum under the constraints.
-    """
-
-    x: Array
-    rate: Array
-    negative_pivots: int
-    expected_negative_pivots: int
-    zero_pivots: int
-
-    @property
-    def stable(self) -> bool:
-        """Whether the state is a strict minimum of the energy."""
-        return self.zero_pivots == 0 and self.negative_pivots == self.expected_negative_pivots
-
-
-class Equilibrium(Protocol):
-    """What continuation needs of a problem."""
-
-    def correct(self, guess: Array, load: float) -> Correction:
-        """Find the equilibrium near `guess`."""
-
-    def linearise(self, x: Array, load: float) -> Linearisation:
-        """Derivative of the path and inertia at an equilibrium."""
+__all__ = [
+    "Array",
+    "Checkpoint",
+    "Correction",
+    "Equilibrium",
+    "Linearisation",
+    "Step",
+    "follow",
+    "start_at",
+]
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +62,11 @@ def start_at(x: Array) -> Checkpoint:
 
 @dataclass(frozen=True, eq=False)
 class Step:
-    """An accepted state; step 0 is the start. From `checkpoint` the path can be taken up again."""
+    """An accepted state; step 0 is the start.
+
+    From `checkpoint` the path can be taken up again. That of a critical state, which has
+    `critical`, is the one of the state before it.
+    """
 
     number: int
     load: float
@@ -97,6 +75,7 @@ class Step:
     linearisation: Linearisation
     is_stop: bool
     checkpoint: Checkpoint
+    critical: CriticalPoint | None = None
 
 
 Rejected = Callable[[float, float, str], None]
@@ -108,6 +87,8 @@ def follow(
     settings: StepSettings,
     predictor: PredictorName = "tangent",
     on_rejected: Rejected | None = None,
+    watch: ModalEquilibrium | None = None,
+    on_instability: OnInstability = "follow",
 ) -> Iterator[Step]:
     """Yield the states of a path as they are accepted, the last one of `start` first.
 
@@ -118,10 +99,14 @@ def follow(
     continuation. So the first unstable state is accepted only after a step of at most
     `settings.critical_step`: then the path itself has lost stability.
 
+    With `watch`, the same problem, the critical point is then located, and is a step of its own.
+    There `on_instability` says whether to "follow" the path, to "stop", or to "branch": to go on,
+    at a bifurcation, along the stable path that branches off.
+
     Raises
     ------
     PathError
-        Where the smallest step fails too.
+        Where the smallest step fails too, or no stable branch is found.
     """
     size = StepSize(settings, start.step_size)
     *earlier, here = start.points
@@ -130,6 +115,7 @@ def follow(
     while True:
         here = PathPoint(here.load, linearisation.x, linearisation.rate)
         points = (*earlier[-1:], here)
+        checkpoint = Checkpoint(points, number, iterations, size.value)
         yield Step(
             number,
             here.load,
@@ -137,16 +123,64 @@ def follow(
             iterations,
             linearisation,
             here.load in settings.stops,
-            Checkpoint(points, number, iterations, size.value),
+            checkpoint,
         )
         if size.finished(here.load):
             return
-        correction, linearisation = _advance(
+        correction, new = _advance(
             problem, points, size, predictor, linearisation.stable, on_rejected
         )
-        earlier, here = [here], PathPoint(correction.load, correction.x)
+        earlier = [here]
+        if watch is not None and new.stable != linearisation.stable:
+            change = Change(here.load, linearisation, correction.load, new)
+            between = _between(watch, predictor, points, correction)
+            point = None
+            with suppress(JumpError):  # it was as small a step as there is
+                point = critical_point(watch, change, between)
+            if point is not None:
+                number += 1
+                yield critical_step(number, point, checkpoint)
+                if change.lost and on_instability == "stop":
+                    return
+                if change.lost and on_instability == "branch" and point.kind == "bifurcation":
+                    branch = leave(watch, point, size.next_stop(point.load))
+                    correction, new = branch.correction, branch.linearisation
+                    earlier = []
+                    size.restart(correction.load - point.load)
+        linearisation = new
+        here = PathPoint(correction.load, linearisation.x)
         number, iterations = number + 1, correction.iterations
         size.accepted(iterations)
+
+
+def critical_step(number: int, point: CriticalPoint, checkpoint: Checkpoint) -> Step:
+    """A critical point as a step."""
+    return Step(
+        number,
+        point.load,
+        point.x,
+        point.iterations,
+        point.linearisation,
+        False,
+        checkpoint,
+        point,
+    )
+
+
+def _between(
+    problem: Equilibrium,
+    predictor: PredictorName,
+    points: tuple[PathPoint, ...],
+    end: Correction,
+) -> Callable[[float], Correction]:
+    """States at fractions of the load step from the last of `points` to `end`."""
+    first = points[-1].load
+
+    def state_at(way: float) -> Correction:
+        load = first + way * (end.load - first)
+        return problem.correct(predict(predictor, points, load), load)
+
+    return state_at
 
 
 def _advance(
@@ -179,5 +213,5 @@ def _give_up(last: float, load: float, reason: str) -> str:
         f"No equilibrium was found beyond load factor {last:.6g}: the smallest step, to "
         f"{load:.6g}, failed because {reason}. Every state up to {last:.6g} is saved. "
         "Try a smaller continuation.min_step, a larger continuation.max_iterations, "
-        "or a finer mesh."
+        'or a finer mesh; where the path turns back, continuation.method = "arc_length".'
     )

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 
-#: Errors, in typical sizes, above which the factor of another state is not trusted.
-_NEAR = 1e-2
 #: Steps with an old factor that cost as much as a new one.
 _STEPS_PER_FACTOR = 10.0
 
@@ -17,11 +15,13 @@ class FactorReuse:
     factor is kept while the steps that it would still take are fewer than that.
     """
 
-    def __init__(self, tolerance: float, contraction: float) -> None:
-        """`tolerance` is the error aimed at; `contraction` the largest share that a step may leave.
+    def __init__(self, tolerance: float, contraction: float, near: float = 1e-2) -> None:
+        """Aim at an error of `tolerance`.
 
-        With a contraction of 0 a factor is never kept.
+        Errors are in typical sizes. A factor is kept where they are at most `near` and a step
+        leaves at most the share `contraction` of them; with 0 never.
         """
+        self._near = near
         self._tolerance = tolerance
         self._contraction = contraction
         self.begin()
@@ -33,11 +33,11 @@ class FactorReuse:
     def keep(self, error: float) -> bool:
         """Whether to go on with the factor by which the remaining error was just estimated."""
         last, self._last = self._last, error
-        if not 0.0 < error <= _NEAR:
+        if not 0.0 < error <= self._near:
             return False
         share = error / last
         if math.isinf(last):
-            return error <= self._contraction * _NEAR
+            return error <= self._contraction * self._near  # its contraction is not known yet
         if share > self._contraction:
             return False
         return math.log(self._tolerance / error) / math.log(share) <= _STEPS_PER_FACTOR

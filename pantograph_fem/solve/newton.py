@@ -12,11 +12,14 @@ from petsc4py import PETSc
 from .factor_reuse import FactorReuse
 from .factorisation import Factorisation, SingularTangentError
 from .newton_settings import REASONS, NewtonResult, NewtonSettings
+from .origin import Origin
 
 Array = NDArray[np.float64]
 
 #: A bound that is never met in practice: each step with an old factor contracts the error.
 _STEPS_PER_TANGENT = 20
+#: Steps, in typical sizes, that are no more than round-off.
+_ROUND_OFF = 1e-15
 #: A Newton step that leaves more than this share of the error is a slow one;
 _SLOW = 0.7
 #: so many in a row, and another way of shortening steps is tried, where there is one.
@@ -47,7 +50,7 @@ class NewtonSolver:
     def __init__(
         self,
         residual: Callable[[Array, PETSc.Vec], None],
-        tangent: Callable[[Array, PETSc.Mat], None],
+        tangent: Callable[[Array, PETSc.Mat, Origin | None], None],
         matrix: PETSc.Mat,
         typical: Array,
         typical_energy: float,
@@ -59,7 +62,8 @@ class NewtonSolver:
         Parameters
         ----------
         residual, tangent
-            Fill a vector or matrix at the owned unknowns x, in physical units.
+            Fill a vector or matrix at the owned unknowns x, in physical units; `tangent` is told
+            the origin of x, if it is known.
         matrix
             Where the tangent goes; also gives the layout of vectors.
         typical
@@ -80,7 +84,9 @@ class NewtonSolver:
         self._error = matrix.createVecLeft()
         self._x = matrix.createVecLeft()
         self._factorisation = Factorisation(matrix)
-        self._policy = FactorReuse(self.settings.tolerance, self.settings.contraction)
+        self._policy = FactorReuse(
+            self.settings.tolerance, self.settings.contraction, self.settings.near
+        )
         self._residuals: list[float] = []
         self._tangents = 0  # factorised in this solve
         self._bound = 0  # tangents after which the attempt has failed
@@ -92,11 +98,19 @@ class NewtonSolver:
         self._reuse = True
         self._patient = True
 
+        self._guess_origin: Origin | None = None
+        self._origin: Origin | None = None  # of the present iterate
+        self._iterate = np.empty(0)
+
         self._snes = self._newton("r")
         self._descent = self._newton("p") if potential is not None else None
 
-    def solve(self, guess: Array) -> NewtonResult:
-        """Iterate from a guess that satisfies the constraints; `guess` is not changed."""
+    def solve(self, guess: Array, origin: Origin | None = None) -> NewtonResult:
+        """Iterate from a guess that satisfies the constraints; `guess` is not changed.
+
+        The first tangent is told the origin of the guess, those that follow the iterate before.
+        """
+        self._guess_origin = origin
         self._residuals.clear()
         self._tangents = 0
         self._reuse = self.settings.contraction > 0
@@ -110,17 +124,29 @@ class NewtonSolver:
             return self._attempt(self._snes, guess)
         return result
 
-    def factorise(self, x: Array) -> Factorisation:
-        """Factorise the tangent at x; valid until the next solve."""
+    @property
+    def factorisation(self) -> Factorisation:
+        """The factor of the tangent, measured in typical sizes and energy."""
+        return self._factorisation
+
+    def factorise(self, x: Array, origin: Origin | None = None) -> Factorisation:
+        """Factorise the tangent at x, which may be told where x is from; until the next solve."""
         self._x.array[:] = x / self._scale.array
+        self._origin = origin
         self._new_factor(self._x)
         return self._factorisation
 
     def correction(self, x: Array) -> Array:
-        """What a Newton step from x with the last factor adds to x, in physical units."""
-        residual = self._matrix.createVecLeft()
+        """What a Newton step from x with the last factor adds to x, in physical units.
+
+        Nothing where it is no more than round-off: the state of rest stays at rest.
+        """
+        residual, step = self._matrix.createVecLeft(), self._matrix.createVecLeft()
         self._residual(x, residual)
-        return -self.back_substitute(residual.array)
+        step.array[:] = self.back_substitute(residual.array) / self._scale.array
+        if step.norm(PETSc.NormType.NORM_INFINITY) < _ROUND_OFF:
+            return np.zeros_like(x)
+        return -step.array * self._scale.array
 
     def back_substitute(self, load: Array) -> Array:
         """Solve (tangent last factorised) y = load, in physical units."""
@@ -149,8 +175,9 @@ class NewtonSolver:
         if suffix == "p":
             snes.setObjective(self._evaluate_potential)
         snes.setConvergenceTest(self._test_convergence)
-        # SNES compares its own residual tolerances nowhere: the test above replaces them.
-        snes.setTolerances(max_it=_STEPS_PER_TANGENT * self.settings.max_iterations)
+        # The test above replaces the tolerances of SNES, which still holds that on the step against
+        # line searches that failed: a state that was not left any more would count as found.
+        snes.setTolerances(stol=0.0, max_it=_STEPS_PER_TANGENT * self.settings.max_iterations)
         return snes
 
     def _attempt(self, snes: PETSc.SNES, guess: Array) -> NewtonResult:
@@ -186,7 +213,7 @@ class NewtonSolver:
             self._new_factor(x)
 
     def _new_factor(self, x: PETSc.Vec) -> None:
-        self._tangent(x.array_r * self._scale.array, self._matrix)
+        self._tangent(x.array_r * self._scale.array, self._matrix, self._origin)
         self._matrix.diagonalScale(self._scale, self._scale)
         self._matrix.scale(1.0 / self._energy)
         self._factorisation.update()
@@ -197,12 +224,17 @@ class NewtonSolver:
         assert self._potential is not None
         return self._potential(x.array_r * self._scale.array) / self._energy
 
+    def _trace(self, x: Array, iteration: int) -> None:
+        before, self._iterate = self._iterate, x
+        self._origin = Origin(before, x - before) if iteration else self._guess_origin
+
     def _test_convergence(
         self, snes: PETSc.SNES, iteration: int, norms: tuple[float, float, float]
     ) -> int:
         residual = norms[2]
         self._residuals.append(residual)
         self._keep = self._step_at_hand = False
+        self._trace(snes.getSolution().array_r * self._scale.array, iteration)
         reasons = PETSc.SNES.ConvergedReason
         if not np.isfinite(residual):
             return reasons.DIVERGED_FNORM_NAN

@@ -23,11 +23,14 @@ class NewtonSettings:
     contraction
         A factor is used again while each step leaves at most this share of the error; 0 makes
         every step a full Newton step.
+    near
+        Errors, in typical sizes, above which a factor is not used again.
     """
 
     tolerance: float = 1e-8
     max_iterations: int = 15
     contraction: float = 0.5
+    near: float = 1e-2
 
 
 @dataclass(frozen=True)

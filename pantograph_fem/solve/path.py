@@ -1,28 +1,67 @@
-"""An equilibrium problem as continuation sees it: it corrects a guess and linearises a state."""
+"""An equilibrium problem as path following sees it: it corrects guesses and linearises states."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+from functools import cached_property
+
+import numpy as np
+
+from mpi4py import MPI
+
 from ..stopwatch import Stopwatch
-from .continuation import Array, Correction, Linearisation
+from .bordered import BorderedNewton
+from .eigenvalue import LowestMode
+from .equilibrium import Array, Correction, Linearisation, Mode, Plane
+from .factorisation import Inertia
+from .metric import Metric
 from .newton import NewtonSolver
 from .newton_settings import NewtonSettings
+from .origin import Origin
 from .problem import Problem
+
+#: Errors, in typical sizes, up to which an old factor serves a problem that extrapolates stresses.
+#: Farther off its steps leave strains that the next tangent would extrapolate.
+_NEAR = 1e-5
 
 
 class NewtonPath:
-    """Implements :class:`pantograph_fem.solve.continuation.Equilibrium` by Newton's method."""
+    """Implements :class:`pantograph_fem.solve.equilibrium.ModalEquilibrium` by Newton's method."""
 
-    def __init__(self, problem: Problem, settings: NewtonSettings, clock: Stopwatch) -> None:
+    def __init__(
+        self,
+        problem: Problem,
+        settings: NewtonSettings,
+        clock: Stopwatch,
+        weights: Array | None = None,
+        eigenvalues: bool = False,
+    ) -> None:
+        """Set up the solver.
+
+        Parameters
+        ----------
+        problem, settings, clock
+            What is solved, when iterations stop and where their time is counted.
+        weights
+            Share of each owned unknown in the mean square of a displacement, 0 for what is no
+            displacement; the same for all by default.
+        eigenvalues
+            Whether `linearise` finds the lowest mode at every state.
+        """
         self._problem = problem
         self._clock = clock
+        self._weights = weights
+        self._eigenvalues = eigenvalues
         self._load = 0.0
+        self._trusted: tuple[float, Array, Array] | None = None
+        self._matrix = problem.matrix()
         self._newton = NewtonSolver(
             lambda x, r: problem.residual(x, self._load, r),
-            lambda x, A: problem.tangent(x, self._load, A),
-            problem.matrix(),
+            lambda x, A, origin: problem.tangent(x, self._load, A, origin),
+            self._matrix,
             problem.typical_sizes,
             problem.typical_energy,
-            settings,
+            replace(settings, near=_NEAR) if problem.extrapolates else settings,
             self._potential if problem.has_minima else None,
         )
 
@@ -30,13 +69,16 @@ class NewtonPath:
         """Newton's method from the guess, with the held unknowns put in place."""
         self._load = load
         with self._clock("solve"):
-            result = self._newton.solve(self._problem.impose(guess, load))
+            guess = self._problem.impose(guess, load)
+            result = self._newton.solve(guess, self._origin(load))
         if result.converged and (reason := self._problem.objection(result.x, load)):
             return Correction(load, result.x, False, result.iterations, reason)
         return Correction(load, result.x, result.converged, result.iterations, result.reason)
 
-    def _potential(self, x: Array) -> float:
-        return self._problem.potential(x, self._load)
+    def correct_on_plane(self, plane: Plane) -> Correction:
+        """Newton's method for the state and its load, from the point of the plane."""
+        with self._clock("solve"):
+            return self._bordered.solve(plane)
 
     def linearise(self, x: Array, load: float) -> Linearisation:
         """Factorise the tangent at an accepted state: its inertia, and the path's direction.
@@ -44,16 +86,75 @@ class NewtonPath:
         The factor, being at hand, corrects the state once more: forces, which are differences of
         large ones in places, gain more digits than the state had.
         """
+        return self._linearise(x, load, self._eigenvalues)
+
+    def analyse(self, x: Array, load: float) -> Linearisation:
+        """As :meth:`linearise`, with the lowest mode in any case."""
+        return self._linearise(x, load, True)
+
+    def inner(self, a: Array, b: Array) -> float:
+        """Mean product of the displacements of two states, in typical sizes."""
+        return self._metric.inner(a, b)
+
+    def _linearise(self, x: Array, load: float, modal: bool) -> Linearisation:
         self._load = load
         with self._clock("solve"):
-            factor = self._newton.factorise(x)
+            inertia = self._newton.factorise(x).inertia
             x = x + self._newton.correction(x)
-            rate = self._newton.back_substitute(self._problem.load_rate(x, load))
-            inertia = factor.inertia
+            force = self._problem.load_rate(x, load)
+            rate = self._newton.back_substitute(force)
+            mode = self._lowest(inertia, force, rate) if modal else None
+        self._trusted = (load, x, rate)
         return Linearisation(
             x=x,
             rate=rate,
             negative_pivots=inertia.negative,
             expected_negative_pivots=self._problem.expected_negative_pivots,
             zero_pivots=inertia.zero,
+            lowest=mode,
         )
+
+    def _lowest(self, inertia: Inertia, force: Array, rate: Array) -> Mode | None:
+        """The lowest mode at the state that was factorised last."""
+        excess = inertia.negative - self._problem.expected_negative_pivots
+        found = self._modes.find(max(excess, 0))
+        if found is None:
+            return None
+        eigenvalue, phi = found
+        shape = phi * self._problem.typical_sizes
+        free = self._metric.free
+        work, response = (self._sum(force[free] * y[free]) for y in (shape, rate))
+        stiffness = eigenvalue * self._problem.typical_energy * response
+        return Mode(eigenvalue, shape, work**2 / stiffness if stiffness else 0.0)
+
+    def _sum(self, products: Array) -> float:
+        return self._comm.allreduce(float(np.sum(products)), MPI.SUM)
+
+    def _potential(self, x: Array) -> float:
+        return self._problem.potential(x, self._load)
+
+    def _origin(self, load: float) -> Origin | None:
+        """The state that was linearised last, and the step along its tangent to a load."""
+        if self._trusted is None:
+            return None
+        trusted, x, rate = self._trusted
+        return Origin(x, (load - trusted) * rate)
+
+    def _set_load(self, load: float) -> None:
+        self._load = load
+
+    @property
+    def _comm(self) -> MPI.Comm:
+        return self._matrix.comm.tompi4py()
+
+    @cached_property
+    def _metric(self) -> Metric:
+        return Metric(self._problem, self._comm, self._weights)
+
+    @cached_property
+    def _bordered(self) -> BorderedNewton:
+        return BorderedNewton(self._problem, self._newton, self._metric, self._set_load)
+
+    @cached_property
+    def _modes(self) -> LowestMode:
+        return LowestMode(self._matrix, self._newton.factorisation, self._metric.weights)

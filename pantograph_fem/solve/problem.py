@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 
 from petsc4py import PETSc
 
+from .origin import Origin
+
 Array = NDArray[np.float64]
 
 
@@ -35,6 +37,10 @@ class Problem(Protocol):
     def has_minima(self) -> bool:
         """Whether the stable states are minima of :meth:`potential`."""
 
+    @property
+    def extrapolates(self) -> bool:
+        """Whether tangents make use of an origin."""
+
     def matrix(self) -> PETSc.Mat:
         """An empty matrix for the tangent."""
 
@@ -47,8 +53,12 @@ class Problem(Protocol):
     def residual(self, x: Array, load: float, r: PETSc.Vec) -> None:
         """Gradient of the potential; zero at the held unknowns, whose values x must have."""
 
-    def tangent(self, x: Array, load: float, A: PETSc.Mat) -> None:
-        """Derivative of the residual; rows and columns of held unknowns are the identity's."""
+    def tangent(self, x: Array, load: float, A: PETSc.Mat, origin: Origin | None = None) -> None:
+        """Derivative of the residual; rows and columns of held unknowns are the identity's.
+
+        `origin` tells where an iterate was extrapolated from, for tangents that converge faster
+        if they know; at a solution they must be the derivative.
+        """
 
     def load_rate(self, x: Array, load: float) -> Array:
         """Right side whose solution with the tangent is dx/dload along the path."""

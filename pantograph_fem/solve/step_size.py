@@ -46,9 +46,17 @@ class StepSize:
 
     def next_load(self, load: float) -> float:
         """Where to go from `load`: equal steps, none above the step size, up to the next stop."""
-        stop = next(s for s in self.settings.stops if s > load + _ROUNDING)
+        stop = self.next_stop(load)
         steps = math.ceil((stop - load) / self.value - _ROUNDING)
         return stop if steps <= 1 else load + (stop - load) / steps
+
+    def next_stop(self, load: float) -> float:
+        """The first stop beyond `load`."""
+        return next(s for s in self.settings.stops if s > load + _ROUNDING)
+
+    def restart(self, value: float) -> None:
+        """Go on with steps of about this size, as on another path."""
+        self.value = min(max(value, self.settings.min_step), self.settings.max_step)
 
     def finished(self, load: float) -> bool:
         """Whether `load` is the last stop."""

@@ -17,6 +17,7 @@ _NOT_IN_FORMS = {"name", "title", "mesh", "continuation", "output"}
 #: One step of one iteration: it is rejected, and by then all forms have been compiled.
 _ONE_ITERATION = Continuation(initial_step=1.0, min_step=1.0, max_step=1.0, max_iterations=1)
 
+
 def forms_of(case: Any) -> str:
     """Text that is the same for cases whose forms are the same; empty where there are none."""
     if not hasattr(case, "discretisation"):

@@ -1,0 +1,80 @@
+"""What is done where a path loses stability, or regains it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+from ..errors import PathError
+from .branch import BranchState, switch_branch
+from .critical import CriticalPoint, locate
+from .equilibrium import Correction, Linearisation, ModalEquilibrium
+
+#: Go on along the unstable path, end there, or go on along the stable path that branches off.
+OnInstability = Literal["follow", "stop", "branch"]
+
+
+@dataclass(frozen=True, eq=False)
+class Change:
+    """Two states in a row, one of which is stable."""
+
+    load: float
+    first: Linearisation
+    next_load: float
+    second: Linearisation
+
+    @property
+    def lost(self) -> bool:
+        """Whether stability is lost, not regained."""
+        return self.first.stable
+
+
+def critical_point(
+    problem: ModalEquilibrium,
+    change: Change,
+    state_at: Callable[[float], Correction],
+    length: float | None = None,
+) -> CriticalPoint | None:
+    """The critical point between two states; None where no mode could be found.
+
+    `state_at` corrects states at fractions of the way between them, and `length` is that way, by
+    default that of the load.
+
+    Raises
+    ------
+    JumpError
+        If they are states of two paths.
+    """
+
+    def known_at(way: float) -> Correction:
+        if way == 0.0:
+            return Correction(change.load, change.first.x, True, 0, "")
+        if way == 1.0:
+            return Correction(change.next_load, change.second.x, True, 0, "")
+        return state_at(way)
+
+    loads = change.load, change.next_load
+    length = abs(loads[1] - loads[0]) if length is None else length
+    return locate(problem, known_at, loads, length, change.lost)
+
+
+def leave(
+    problem: ModalEquilibrium, point: CriticalPoint, before: float, upwards: bool = True
+) -> BranchState:
+    """The first state on the branch at a bifurcation.
+
+    Raises
+    ------
+    PathError
+        If there is none; with `upwards`, none that is stable at a load above the critical one.
+    """
+    branch = switch_branch(problem, point, before, upwards)
+    if branch is None:
+        raise PathError(
+            f"The path loses stability at load factor {point.load:.9g}, and no stable branch was "
+            "found to rise from there. Every state up to there is saved. Try "
+            'continuation.on_instability = "follow" or "stop"'
+            + (', or continuation.method = "arc_length".' if upwards else ".")
+        )
+    return branch
