@@ -61,7 +61,7 @@ def test_a_path_stops_at_its_critical_load_when_asked_to(arc):
 
 
 @pytest.mark.parametrize("arc", [False, True])
-@pytest.mark.parametrize("stops", [(1.0,), (0.5005, 0.8, 1.0)])
+@pytest.mark.parametrize("stops", [(1.0,), (0.5005, 0.8, 1.0), (0.5, 1.0)])
 def test_the_stable_branch_is_followed_when_asked_for(arc, stops):
     steps = steps_of(pitchfork(), on_instability="branch", arc=arc, stops=stops)
     (found,) = critical_of(steps)

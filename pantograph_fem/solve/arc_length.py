@@ -6,13 +6,21 @@ from collections.abc import Callable, Iterator
 
 from ..errors import PathError
 from .arc import Arc, Parabola, Point
-from .continuation import Checkpoint, Rejected, Step, critical_step
+from .continuation import Rejected
 from .critical import CriticalPoint, JumpError
 from .equilibrium import Array, Correction, Linearisation, ModalEquilibrium
-from .instability import Change, OnInstability, critical_point, leave
+from .instability import (
+    Change,
+    OnInstability,
+    critical_point,
+    leave,
+    leaves_at,
+    put_on_stop,
+)
 from .origin import Origin
 from .predictor import PathPoint
 from .step_size import StepSettings, StepSize
+from .steps import Checkpoint, Step, critical_step
 
 #: Share of a step by which its end may miss what the tangent predicts. Farther away are states
 #: of other paths, or the path turns too sharply for the step.
@@ -65,12 +73,15 @@ def follow_arc_length(
         before = here
         end, new, point = _advance(arc, points, linearisation, size, on_rejected)
         if point is not None:
-            number += 1
-            yield critical_step(number, point, checkpoint)
             lost = linearisation.stable
-            if lost and on_instability == "stop":
+            leaves = leaves_at(point, lost, on_instability)
+            if leaves:
+                point = put_on_stop(point, end, new, settings.stops)
+            number += 1
+            yield critical_step(number, point, checkpoint, settings)
+            if (lost and on_instability == "stop") or size.finished(point.load):
                 return
-            if lost and on_instability == "branch" and point.kind == "bifurcation":
+            if leaves:
                 branch = leave(problem, point, size.next_stop(point.load), upwards=False)
                 end, new = branch.correction, branch.linearisation
                 before = PathPoint(point.load, point.x, point.linearisation.rate)

@@ -8,10 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from dataclasses import dataclass
 
 from ..errors import PathError
-from .critical import CriticalPoint, JumpError
+from .critical import JumpError
 from .equilibrium import (
     Array,
     Correction,
@@ -19,9 +18,17 @@ from .equilibrium import (
     Linearisation,
     ModalEquilibrium,
 )
-from .instability import Change, OnInstability, critical_point, leave
+from .instability import (
+    Change,
+    OnInstability,
+    critical_point,
+    leave,
+    leaves_at,
+    put_on_stop,
+)
 from .predictor import PathPoint, PredictorName, predict
 from .step_size import StepSettings, StepSize
+from .steps import Checkpoint, Step, critical_step, start_at
 
 __all__ = [
     "Array",
@@ -33,49 +40,6 @@ __all__ = [
     "follow",
     "start_at",
 ]
-
-
-@dataclass(frozen=True, eq=False)
-class Checkpoint:
-    """All that the rest of a path depends on.
-
-    Attributes
-    ----------
-    points
-        The last one or two accepted states, the last one last.
-    number, iterations
-        Number of the last accepted step, and the iterations it took.
-    step_size
-        Size of the next step; None for the initial one of the settings.
-    """
-
-    points: tuple[PathPoint, ...]
-    number: int = 0
-    iterations: int = 0
-    step_size: float | None = None
-
-
-def start_at(x: Array) -> Checkpoint:
-    """The beginning of a path at a state that is in equilibrium at load 0."""
-    return Checkpoint((PathPoint(0.0, x),))
-
-
-@dataclass(frozen=True, eq=False)
-class Step:
-    """An accepted state; step 0 is the start.
-
-    From `checkpoint` the path can be taken up again. That of a critical state, which has
-    `critical`, is the one of the state before it.
-    """
-
-    number: int
-    load: float
-    x: Array
-    iterations: int
-    linearisation: Linearisation
-    is_stop: bool
-    checkpoint: Checkpoint
-    critical: CriticalPoint | None = None
 
 
 Rejected = Callable[[float, float, str], None]
@@ -138,11 +102,14 @@ def follow(
             with suppress(JumpError):  # it was as small a step as there is
                 point = critical_point(watch, change, between)
             if point is not None:
+                leaves = leaves_at(point, change.lost, on_instability)
+                if leaves:
+                    point = put_on_stop(point, correction, new, settings.stops)
                 number += 1
-                yield critical_step(number, point, checkpoint)
-                if change.lost and on_instability == "stop":
+                yield critical_step(number, point, checkpoint, settings)
+                if (change.lost and on_instability == "stop") or size.finished(point.load):
                     return
-                if change.lost and on_instability == "branch" and point.kind == "bifurcation":
+                if leaves:
                     branch = leave(watch, point, size.next_stop(point.load))
                     correction, new = branch.correction, branch.linearisation
                     earlier = []
@@ -151,20 +118,6 @@ def follow(
         here = PathPoint(correction.load, linearisation.x)
         number, iterations = number + 1, correction.iterations
         size.accepted(iterations)
-
-
-def critical_step(number: int, point: CriticalPoint, checkpoint: Checkpoint) -> Step:
-    """A critical point as a step."""
-    return Step(
-        number,
-        point.load,
-        point.x,
-        point.iterations,
-        point.linearisation,
-        False,
-        checkpoint,
-        point,
-    )
 
 
 def _between(

@@ -22,6 +22,8 @@ _SEEN = 0.5
 
 #: The lowest eigenvalue at a critical point is at most this share of those of the two states.
 _NEXT_TO_NOTHING = 0.1
+#: Share of the way between them within which it is, even where it falls like a square root only.
+_NARROW = 1e-3
 
 #: The state at a fraction, in [0, 1], of the way between two states of a path.
 StateAt = Callable[[float], Correction]
@@ -130,7 +132,8 @@ def locate(
     kept = [1.0, 1.0]  # halved while an end stays where it is
     moved = None
     for _ in range(_MOST):
-        if high - low <= tolerance:
+        jump = high - low <= _NARROW and (below.eigenvalue or 0.0) > least
+        if high - low <= tolerance or jump:
             break
         way = _next(low, high, below.eigenvalue, above.eigenvalue, kept, 0.4 * tolerance)
         new = sample(way)
@@ -147,8 +150,8 @@ def locate(
         return None
     if linearisation.lowest.eigenvalue > least:
         raise JumpError(
-            f"the lowest eigenvalue of the tangent jumps at load factor {below.load:.6g}, where the "
-            "path was left for another one"
+            f"the lowest eigenvalue of the tangent jumps at load factor {below.load:.6g}: "
+            "the path was left for another one"
         )
     seen = linearisation.lowest.load_share > _SEEN
     return CriticalPoint(below.load, linearisation, "limit point" if seen else "bifurcation", count)

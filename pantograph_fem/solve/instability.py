@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from ..errors import PathError
 from .branch import BranchState, switch_branch
 from .critical import CriticalPoint, locate
 from .equilibrium import Correction, Linearisation, ModalEquilibrium
+
+#: Relative difference of loads that are both critical, for all that is known.
+_SAME_LOAD = 1e-5
 
 #: Go on along the unstable path, end there, or go on along the stable path that branches off.
 OnInstability = Literal["follow", "stop", "branch"]
@@ -57,6 +60,25 @@ def critical_point(
     loads = change.load, change.next_load
     length = abs(loads[1] - loads[0]) if length is None else length
     return locate(problem, known_at, loads, length, change.lost)
+
+
+def leaves_at(point: CriticalPoint, lost: bool, on_instability: OnInstability) -> bool:
+    """Whether the path is left at a critical point, where stability is `lost` or regained."""
+    return lost and on_instability == "branch" and point.kind == "bifurcation"
+
+
+def put_on_stop(
+    point: CriticalPoint, end: Correction, linearisation: Linearisation, stops: Sequence[float]
+) -> CriticalPoint:
+    """The critical point at the state behind it, if that is a stop which is critical itself.
+
+    No branch could be taken between the two.
+    """
+    near = abs(end.load - point.load) <= _SAME_LOAD * max(abs(end.load), 1.0)
+    if not near or end.load not in stops:
+        return point
+    there = replace(linearisation, lowest=point.mode)
+    return replace(point, load=end.load, linearisation=there)
 
 
 def leave(
