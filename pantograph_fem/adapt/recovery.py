@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from dolfinx import fem, mesh
 
 from .. import dolfinx_api as api
+from ..continuum.weights import cell_sizes
 from ..physics.kinematics import Expr
 
 Array = NDArray[np.float64]
@@ -38,11 +39,9 @@ class Recovery:
         self._expression = api.expression(
             ufl.as_vector(list(expressions)), api.interpolation_points(space)
         )
-        owned = domain.topology.index_map(domain.topology.dim).size_local
-        self._cells = np.arange(owned, dtype=np.int32)
+        self.areas = cell_sizes(domain)
+        self._cells = np.arange(len(self.areas), dtype=np.int32)
         self._dofs = api.cell_dofs(space)[self._cells]
-        corners = domain.geometry.x[api.cell_vertices(domain)[self._cells]][:, :, :2]
-        self.areas = 0.5 * np.abs(np.linalg.det(corners[:, 1:] - corners[:, :1]))
         self._weights = self._sums(np.ones((*self._dofs.shape, len(expressions))))
 
     def evaluate(self) -> tuple[Array, Array]:

@@ -64,7 +64,7 @@ class ContinuumEquilibrium:
                 energies[name] += term
             if support.potential is not None:
                 functional += support.potential
-        self._potential = api.form(functional)
+        self._potential = api.form(functional) if self.has_minima else None
         residual = ufl.derivative(functional, self._state)
         self._residual = api.form(residual)
         space = self._state.function_space
@@ -123,6 +123,7 @@ class ContinuumEquilibrium:
         """The functional of which an equilibrium is a stationary point, J."""
         with self._clock("assemble"):
             self.load_state(x, load)
+            assert self._potential is not None  # it has minima
             potential = fem.assemble_scalar(self._potential)
             return self._comm.allreduce(potential, MPI.SUM)
 
@@ -202,6 +203,8 @@ class ContinuumEquilibrium:
             support.move(load)
 
     def _extrapolate(self, origin: Origin) -> None:
+        if not self.extrapolates:
+            return
         for function, values in ((self._origin, origin.x), (self._step, origin.step)):
             function.x.array[: self._owned] = values
             function.x.scatter_forward()

@@ -20,10 +20,10 @@ def displacement_weights(discretisation: Discretisation, domain: mesh.Mesh) -> N
     """
     field = discretisation.field("displacement")
     assert field is not None  # every scheme has one
-    cells = api.cell_dofs(field.space)[: domain.topology.index_map(domain.topology.dim).size_local]
+    cells = api.cell_dofs(field.space)[: _owned(domain)]
     sums = api.create_vector(field.space)
     sums.array[:] = 0.0
-    sizes = _sizes(domain, len(cells))
+    sizes = cell_sizes(domain)
     sizes /= domain.comm.allreduce(float(sizes.sum()))
     shares = np.repeat(sizes / cells.shape[1], cells.shape[1])
     by_node = sums.array.reshape(len(field.dofs), -1)
@@ -34,7 +34,13 @@ def displacement_weights(discretisation: Discretisation, domain: mesh.Mesh) -> N
     return weights[: api.owned_size(discretisation.state.function_space)]
 
 
-def _sizes(domain: mesh.Mesh, count: int) -> NDArray[np.float64]:
-    x = domain.geometry.x[api.cell_vertices(domain)[:count]][:, :, : domain.topology.dim]
+def cell_sizes(domain: mesh.Mesh) -> NDArray[np.float64]:
+    """Length of each owned interval, m, or area of each owned triangle, m²."""
+    cells = api.cell_vertices(domain)[: _owned(domain)]
+    x = domain.geometry.x[cells][:, :, : domain.topology.dim]
     sides = x[:, 1:] - x[:, :1]
     return np.abs(np.linalg.det(sides)) / domain.topology.dim
+
+
+def _owned(domain: mesh.Mesh) -> int:
+    return int(domain.topology.index_map(domain.topology.dim).size_local)

@@ -20,7 +20,7 @@ from .instability import (
 from .origin import Origin
 from .predictor import PathPoint
 from .step_size import StepSettings, StepSize
-from .steps import Checkpoint, Step, critical_step
+from .steps import Checkpoint, Step, accepted_step, critical_step
 
 #: Share of a step by which its end may miss what the tangent predicts. Farther away are states
 #: of other paths, or the path turns too sharply for the step.
@@ -57,15 +57,7 @@ def follow_arc_length(
         here = PathPoint(points[-1].load, linearisation.x, linearisation.rate)
         points = (*points[:-1], here)
         checkpoint = Checkpoint(points, number, iterations, size.value)
-        yield Step(
-            number,
-            here.load,
-            here.x,
-            iterations,
-            linearisation,
-            here.load in settings.stops,
-            checkpoint,
-        )
+        yield accepted_step(checkpoint, linearisation, settings)
         if size.finished(here.load):
             return
         if number >= max_steps:

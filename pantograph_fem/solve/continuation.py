@@ -28,7 +28,7 @@ from .instability import (
 )
 from .predictor import PathPoint, PredictorName, predict
 from .step_size import StepSettings, StepSize
-from .steps import Checkpoint, Step, critical_step, start_at
+from .steps import Checkpoint, Step, accepted_step, critical_step, start_at
 
 __all__ = [
     "Array",
@@ -80,15 +80,7 @@ def follow(
         here = PathPoint(here.load, linearisation.x, linearisation.rate)
         points = (*earlier[-1:], here)
         checkpoint = Checkpoint(points, number, iterations, size.value)
-        yield Step(
-            number,
-            here.load,
-            here.x,
-            iterations,
-            linearisation,
-            here.load in settings.stops,
-            checkpoint,
-        )
+        yield accepted_step(checkpoint, linearisation, settings)
         if size.finished(here.load):
             return
         correction, new = _advance(

@@ -102,8 +102,8 @@ class NewtonSolver:
         self._origin: Origin | None = None  # of the present iterate
         self._iterate = np.empty(0)
 
-        self._snes = self._newton("r")
-        self._descent = self._newton("p") if potential is not None else None
+        self._snes = self._newton(descending=False)
+        self._descent = self._newton(descending=True) if potential is not None else None
 
     def solve(self, guess: Array, origin: Origin | None = None) -> NewtonResult:
         """Iterate from a guess that satisfies the constraints; `guess` is not changed.
@@ -164,7 +164,8 @@ class NewtonSolver:
             self._factorisation.solve(r, step)
         self._step_at_hand = False
 
-    def _newton(self, suffix: str) -> PETSc.SNES:
+    def _newton(self, *, descending: bool) -> PETSc.SNES:
+        """SNES whose line search lowers the residual, or with `descending` the potential."""
         snes = PETSc.SNES().create(self._matrix.comm)
         ksp = snes.getKSP()
         ksp.setType(PETSc.KSP.Type.PREONLY)
@@ -172,7 +173,7 @@ class NewtonSolver:
         ksp.getPC().setPythonContext(self)
         snes.setFunction(self._fill_residual, self._matrix.createVecLeft())
         snes.setJacobian(self._fill_tangent, self._matrix)
-        if suffix == "p":
+        if descending:
             snes.setObjective(self._evaluate_potential)
         snes.setConvergenceTest(self._test_convergence)
         # The test above replaces the tolerances of SNES, which still holds that on the step against

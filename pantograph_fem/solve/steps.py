@@ -53,6 +53,22 @@ class Step:
     critical: CriticalPoint | None = None
 
 
+def accepted_step(
+    checkpoint: Checkpoint, linearisation: Linearisation, settings: StepSettings
+) -> Step:
+    """The last state of a checkpoint as a step."""
+    here = checkpoint.points[-1]
+    return Step(
+        checkpoint.number,
+        here.load,
+        here.x,
+        checkpoint.iterations,
+        linearisation,
+        here.load in settings.stops,
+        checkpoint,
+    )
+
+
 def critical_step(
     number: int, point: CriticalPoint, checkpoint: Checkpoint, settings: StepSettings
 ) -> Step:
