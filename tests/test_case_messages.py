@@ -156,7 +156,7 @@ def test_missing_sections_and_keys() -> None:
 def test_a_value_in_place_of_a_section() -> None:
     assert problems(mesh="fine") == [
         'mesh: "fine" is not allowed; it must be a section with the keys accuracy, accuracy_of, '
-        "adapt, corner_size, file, grip_size, size"
+        "adapt, corner_size, file, grip_size, growth, size"
     ]
 
 
@@ -253,7 +253,7 @@ def test_bad_overrides(case_file: Path) -> None:
         "  --set sheet.width.x=1: sheet.width is not a section but 0.068; nothing can be set in it",
         f"  --set a..b=1: {form}",
         '  mesh.sise: unknown key; did you mean "size"? Allowed here: accuracy, accuracy_of, '
-        "adapt, corner_size, file, grip_size, size",
+        "adapt, corner_size, file, grip_size, growth, size",
     ]
 
 

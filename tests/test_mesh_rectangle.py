@@ -105,6 +105,20 @@ def test_mesh_does_not_depend_on_the_unit_of_length(factor):
     np.testing.assert_allclose(scaled.points, factor * mesh.points, rtol=1e-12)
 
 
+def test_elements_grow_as_asked_away_from_the_corners():
+    size, corner_size = 0.02, 0.0005
+    for growth in (0.15, 0.3, 0.5):
+        mesh = rectangle(W, H, size, corner_size, growth=growth)
+        corners = mesh.points[mesh.triangles]
+        longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+        middle = corners.mean(axis=1)
+        r = np.hypot(
+            np.minimum(middle[:, 0], W - middle[:, 0]), np.minimum(middle[:, 1], H - middle[:, 1])
+        )
+        asked = np.minimum(size, corner_size + growth * r)
+        assert 0.8 < np.median(longest / asked) < 1.4
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
@@ -113,6 +127,10 @@ def test_mesh_does_not_depend_on_the_unit_of_length(factor):
         (
             (W, H, 0.008, 0.001, (None, -1.0)),
             "mesh: grip_size of the top = -1.0: must be a positive length",
+        ),
+        (
+            (W, H, 0.008, 0.001, (None, None), 0.0),
+            "mesh: growth = 0.0: must be a positive number",
         ),
     ],
 )

@@ -24,6 +24,8 @@ CLAMP_SIZE_OVER_SIDE = 1 / 68
 #: These three, and those of the first of a series of meshes: coarse, as finer ones follow.
 DEFAULTS = (SIZE_OVER_SIDE, CORNER_SIZE_OVER_SIZE, CLAMP_SIZE_OVER_SIDE)
 FIRST_DEFAULTS = (1 / 6, 1 / 20, 1 / 34)
+#: Default growth of the element size per distance from a corner or a grip.
+GROWTH = 0.25
 #: Smallest size at corners and grips, over the size inside; far beyond it gmsh fails.
 SMALLEST_RATIO = 1e-4
 
@@ -42,6 +44,8 @@ class Mesh(Part):
         Element size at the four corners, where the solution is singular, m.
     grip_size
         Element size along the two grips, m; None: no refinement along them.
+    growth
+        Increase of the element size per distance from a corner or a grip; 0.25 by default.
     adapt
         Whether the mesh is refined where the solution needs it until the force or the energy at
         full load is accurate; the sizes are then those of the first mesh, coarser by default.
@@ -57,6 +61,7 @@ class Mesh(Part):
     size: float | None = Field(default=None, gt=0)
     corner_size: float | None = Field(default=None, gt=0)
     grip_size: float | None = Field(default=None, gt=0)
+    growth: float | None = Field(default=None, gt=0, le=1)
     adapt: bool = False
     accuracy: float = Field(default=1e-3, ge=1e-6, le=0.1)
     accuracy_of: Literal["force", "energy"] = "force"
@@ -78,7 +83,7 @@ class Mesh(Part):
 
     @model_validator(mode="after")
     def _file_or_sizes(self) -> Mesh:
-        given = ("size", "corner_size", "grip_size", "adapt")
+        given = ("size", "corner_size", "grip_size", "growth", "adapt")
         wrong = [key for key in given if getattr(self, key)]
         if self.file and wrong:
             text = "not allowed beside mesh.file, whose elements are used as they are"
@@ -109,5 +114,10 @@ class Mesh(Part):
         if problems:
             raise problem_error(*problems)
         return self.model_copy(
-            update={"size": size, "corner_size": corner_size, "grip_size": grip_size}
+            update={
+                "size": size,
+                "corner_size": corner_size,
+                "grip_size": grip_size,
+                "growth": self.growth or GROWTH,
+            }
         )

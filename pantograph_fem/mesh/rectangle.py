@@ -10,13 +10,11 @@ from types import ModuleType
 import numpy as np
 from numpy.typing import NDArray
 
+from pantograph_fem.case.mesh import GROWTH
 from pantograph_fem.errors import CaseError
 from pantograph_fem.mesh.gmsh_session import gmsh_model
 from pantograph_fem.mesh.size_field import SizeField
 from pantograph_fem.mesh.triangulation import Triangulation, boundary_edges
-
-#: Increase of the element size per distance from a corner or a grip.
-GROWTH = 0.25
 
 #: Adds a size field to the current model of gmsh; the value is its tag, valid in the context.
 AddField = Callable[[ModuleType], AbstractContextManager[int]]
@@ -28,16 +26,17 @@ def rectangle(
     size: float,
     corner_size: float,
     grip_size: tuple[float | None, float | None] = (None, None),
+    growth: float = GROWTH,
 ) -> Triangulation:
     r"""Mesh the rectangle [0, width] x [0, height], finer at its corners and, if asked, its grips.
 
     The element size asked for is
 
-    .. math:: h = \min(h_{size},\; h_{corner} + 0.25\,r,\; h_{grip} + 0.25\,d)
+    .. math:: h = \min(h_{size},\; h_{corner} + g\,r,\; h_{grip} + g\,d)
 
-    with r the distance to the nearest corner and d the distance to the grip. The mesh is
-    symmetric to round-off about x = width/2, and about y = height/2 if the two grips have the
-    same size. Equal arguments give equal meshes; all lengths times c give c times the mesh.
+    with r the distance to the nearest corner, d the distance to the grip, and g the growth. The
+    mesh is symmetric to round-off about x = width/2, and about y = height/2 if the two grips have
+    the same size. Equal arguments give equal meshes; all lengths times c give c times the mesh.
 
     Parameters
     ----------
@@ -49,13 +48,15 @@ def rectangle(
         Element size at the four corners.
     grip_size
         Element size along the bottom edge and along the top edge; None asks for nothing.
+    growth
+        g.
 
     Raises
     ------
     CaseError
-        If a length is not a positive number.
+        If a length or the growth is not a positive number.
     """
-    _check_lengths(width, height, size, corner_size, grip_size)
+    _check_lengths(width, height, size, corner_size, grip_size, growth)
     # Gmsh has absolute tolerances: it gets a problem whose longer side is 1. Rounding makes the
     # problem the same to the last bit whatever the unit of length.
     unit = max(width, height)
@@ -66,11 +67,11 @@ def rectangle(
     to_corner = "Sqrt(x*x+y*y)"
     if not mirrored_in_y:
         to_corner = f"Min({to_corner},Sqrt(x*x+({h}-y)*({h}-y)))"
-    field = f"Min({inside},{corner}+{GROWTH}*{to_corner})"
+    field = f"Min({inside},{corner}+{growth}*{to_corner})"
     if bottom is not None:
-        field = f"Min({field},{bottom}+{GROWTH}*y)"
+        field = f"Min({field},{bottom}+{growth}*y)"
     if top is not None and not mirrored_in_y:
-        field = f"Min({field},{top}+{GROWTH}*({h}-y))"
+        field = f"Min({field},{top}+{growth}*({h}-y))"
 
     points, triangles = _mesh_box(w / 2, h / 2 if mirrored_in_y else h, _formula(field))
     points *= (width / 2, height / 2 if mirrored_in_y else height)
@@ -128,6 +129,7 @@ def _check_lengths(
     size: float,
     corner_size: float,
     grip_size: tuple[float | None, float | None],
+    growth: float,
 ) -> None:
     lengths = {
         "width": width,
@@ -140,6 +142,8 @@ def _check_lengths(
     for name, value in lengths.items():
         if value is not None and not (math.isfinite(value) and value > 0.0):
             raise CaseError(f"mesh: {name} = {value}: must be a positive length")
+    if not (math.isfinite(growth) and growth > 0.0):
+        raise CaseError(f"mesh: growth = {growth}: must be a positive number")
 
 
 def _rounded(value: float) -> float:

@@ -34,15 +34,17 @@ def triangulate(case: SheetCase) -> Triangulation:
     options = case.mesh
     if options.file is not None:
         return read_mesh(options.file)
-    # The case has filled in both.
+    # The case has filled in these.
     assert options.size is not None
     assert options.corner_size is not None
+    assert options.growth is not None
     return rectangle(
         case.sheet.width,
         case.sheet.height,
         options.size,
         options.corner_size,
         (options.grip_size, options.grip_size),
+        options.growth,
     )
 
 
