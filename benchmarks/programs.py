@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from series import PANTOGRAPH, Series, Sizes
+from series import GROWTH, PANTOGRAPH, Series, Sizes
 
 from pantograph_fem.case import load_case
 from pantograph_fem.mesh.rectangle import rectangle
@@ -93,14 +93,15 @@ class Programs:
         if "bfs" in options:
             return ["--size", str(size), "--corner-size", str(corner_size)]
         sheet = load_case(CASE).sheet
-        mesh = rectangle(sheet.width, sheet.height, size, corner_size)
+        mesh = rectangle(sheet.width, sheet.height, size, corner_size, growth=GROWTH)
         file = folder / "mesh.npz"
         np.savez(file, points=mesh.points, triangles=mesh.triangles)
         return ["--mesh-file", str(file)]
 
 
 def _overrides(options: Sequence[str], sizes: Sizes) -> list[str]:
-    return [*LEAN, *options, f"mesh.size={sizes[0]}", f"mesh.corner_size={sizes[1]}"]
+    mesh = {"size": sizes[0], "corner_size": sizes[1], "growth": GROWTH}
+    return [*LEAN, *options, *(f"mesh.{key}={value}" for key, value in mesh.items())]
 
 
 def _pantograph(options: Sequence[str], sizes: Sizes, folder: Path) -> Run:

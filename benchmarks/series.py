@@ -9,6 +9,8 @@ Sizes = tuple[float, float]
 
 PANTOGRAPH, SCIKIT_FEM = "pantograph_fem", "scikit-fem"
 
+#: Growth of the size away from the corners, in meshes of triangles.
+GROWTH = 0.35
 VERY_COARSE: Sizes = (0.017, 0.0017)
 COARSE: Sizes = (0.0124, 0.0005)
 MEDIUM: Sizes = (0.0124, 0.00031)

@@ -1,0 +1,1 @@
+"""The commands of ``pantograph``, one a module; each imports what it needs when it is called."""

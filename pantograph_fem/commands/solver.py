@@ -1,0 +1,25 @@
+"""What simulates a case, imported when a case is there to be simulated."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from ..run import RunResult
+
+
+def solver() -> Callable[..., RunResult]:
+    """Import what simulates a case; only for a case that is right, as it takes seconds."""
+    # The fronts of the factorisation are small: threads cost more than they bring.
+    for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+        os.environ.setdefault(threads, "1")
+    import petsc4py
+
+    # A closed pipe or an interrupt is no crash: no PETSc report of a segmentation fault.
+    petsc4py.init(["pantograph", "-no_signal_handler"])
+    from ..run import run
+
+    return run
