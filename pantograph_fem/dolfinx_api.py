@@ -1,7 +1,8 @@
 """The only module that knows which dolfinx is installed.
 
 Everything else calls the functions here, which carry the names of newer releases. The branches on
-``_OLD`` are for 0.5 (Debian 12); without them this is the module for 0.9 (Debian 13) and later.
+``_OLD`` are for 0.5 (Debian 12), those on ``_NEW`` for 0.11 (a wheel on PyPI); without them this
+is the module for 0.9 (Debian 13).
 """
 
 from __future__ import annotations
@@ -19,11 +20,13 @@ from numpy.typing import NDArray
 from mpi4py import MPI
 from petsc4py import PETSc
 
+import basix
 import dolfinx
 import dolfinx.fem.petsc
 from dolfinx import fem, geometry, graph, io, la, mesh
 
-_OLD = tuple(int(part) for part in dolfinx.__version__.split(".")[:2]) < (0, 6)
+_VERSION = tuple(int(part) for part in dolfinx.__version__.split(".")[:2])
+_OLD, _NEW = _VERSION < (0, 6), _VERSION >= (0, 11)
 if not _OLD:
     import basix.ufl
 if TYPE_CHECKING:
@@ -85,7 +88,8 @@ def create_simplex_mesh(
     domain = ufl.Mesh(_coordinate_element(dimension))
     if _OLD:
         return mesh.create_mesh(comm, cells, points, domain)
-    neighbours = mesh.create_cell_partitioner(mesh.GhostMode.shared_facet)
+    links = (2,) if _NEW else ()  # cells at a facet, at most
+    neighbours = mesh.create_cell_partitioner(mesh.GhostMode.shared_facet, *links)
     # By name: the order of the two changed in 0.10.
     return mesh.create_mesh(comm, cells, x=points, e=domain, partitioner=neighbours)
 
@@ -208,6 +212,13 @@ def interpolation_points(space: fem.FunctionSpace) -> NDArray[np.float64]:
     """Reference coordinates of the nodes of a Lagrange cell, shape (nodes, 2)."""
     points = space.element.interpolation_points
     return points() if callable(points) else points  # a property from 0.10 on
+
+
+def quadrature_points(domain: mesh.Mesh, degree: int) -> NDArray[np.float64]:
+    """Reference coordinates of the points where forms of a degree are evaluated in a cell."""
+    cell = getattr(basix.CellType, _CELLS[domain.topology.dim])
+    points, _ = basix.make_quadrature(cell, degree)
+    return points
 
 
 @_compiles

@@ -18,6 +18,7 @@ from pantograph_fem.schemes import Scales, discretise
 from pantograph_fem.sheet.domain import distribute
 from pantograph_fem.sheet.grip import Grip, GripSupport
 from pantograph_fem.solve.newton import NewtonSolver
+from pantograph_fem.solve.newton_settings import NewtonSettings
 
 WIDTH, HEIGHT = 1.0, 2.0
 
@@ -80,7 +81,14 @@ def errors(size, degree, auxiliary_degree):
     def tangent(x, A, origin):
         problem.tangent(x, 0.0, A, origin)
 
-    solver = NewtonSolver(residual, tangent, problem.matrix(), problem.typical_sizes, 1.0)
+    solver = NewtonSolver(
+        residual,
+        tangent,
+        problem.matrix(),
+        problem.typical_sizes,
+        1.0,
+        NewtonSettings(tolerance=1e-13),
+    )
     result = solver.solve(problem.undeformed())
     assert result.converged, result.reason
     problem.load_state(result.x, 0.0)
@@ -100,10 +108,13 @@ def errors(size, degree, auxiliary_degree):
         # nested. The curvature ∂H is of order 1 and 2; u in P2 gains nothing beyond twice that.
         (2, 1, (0.2, 0.1), [(1.6, 2.3), (1.7, 2.3), (1.7, 2.3), (1.2, 2.3)]),
         (3, 2, (0.2, 0.1), [(3.5, 4.3), (2.5, 3.3), (2.5, 3.3), (1.4, 2.3)]),
+        (5, 4, (0.2, 0.1), [(5.5, 6.6), (4.5, 5.6), (4.5, 5.6), (3.3, 4.6)]),
         # the hinge scheme: twice the order of the curvature bounds that of u
         (2, None, (0.2, 0.1), [(1.6, 2.4), (1.6, 2.4)]),
         (3, None, (0.1, 0.05), [(3.5, 4.4), (2.5, 3.4)]),
         (4, None, (0.2, 0.1), [(4.4, 5.5), (3.4, 4.5)]),
+        (5, None, (0.2, 0.1), [(5.5, 6.6), (4.5, 5.6)]),
+        (6, None, (0.2, 0.1), [(6.4, 7.8), (5.5, 6.8)]),
     ],
 )
 def test_every_field_converges_at_its_rate(degree, auxiliary_degree, sizes, limits):

@@ -42,8 +42,8 @@ class BeamDiscretisation(Part):
     """
 
     scheme: Literal["micromorphic", "hinge"] = "micromorphic"
-    degree: Literal[2, 3, 4, 5] = 4
-    auxiliary_degree: int | None = Field(default_factory=_default_auxiliary_degree, ge=1, le=4)
+    degree: Literal[2, 3, 4, 5, 6] = 4
+    auxiliary_degree: int | None = Field(default_factory=_default_auxiliary_degree, ge=1, le=5)
     quadrature_degree: int = Field(default_factory=_default_beam_quadrature_degree, ge=2, le=20)
 
     @field_validator("auxiliary_degree")
@@ -60,7 +60,7 @@ class BeamDiscretisation(Part):
 
 
 class Discretisation(BeamDiscretisation):
-    """Finite elements of a sheet: those of a beam, of lower degree and with smoothed pivots.
+    """Finite elements of a sheet: those of a beam, and smoothed pivots.
 
     Attributes
     ----------
@@ -71,6 +71,6 @@ class Discretisation(BeamDiscretisation):
         whose energy is smooth.
     """
 
-    degree: Literal[2, 3, 4] = 3
+    degree: Literal[2, 3, 4, 5, 6] = 3
     quadrature_degree: int = Field(default_factory=_default_sheet_quadrature_degree, ge=2, le=20)
     shear_regularisation: float = Field(default=1e-4, gt=0)

@@ -16,6 +16,8 @@ def solver() -> Callable[..., RunResult]:
     # The fronts of the factorisation are small: threads cost more than they bring.
     for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
         os.environ.setdefault(threads, "1")
+    # PETSc of a wheel finds the MPI that comes beside it once that is loaded.
+    import mpi4py.MPI  # noqa: F401
     import petsc4py
 
     # A closed pipe or an interrupt is no crash: no PETSc report of a segmentation fault.

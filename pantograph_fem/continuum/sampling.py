@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 import ufl
 from numpy.typing import NDArray
+from scipy.spatial import Delaunay
 
 from dolfinx import mesh
 
@@ -16,20 +17,19 @@ from ..schemes import Discretisation
 
 Array = NDArray[np.float64]
 
-#: Quadratic cells as straight ones, by dimension: of an interval, node 2 is the middle; of a
-#: triangle, nodes 3, 4, 5 lie opposite vertices 0, 1, 2.
-_STRAIGHT = {
-    1: np.array([[0, 2], [2, 1]]),
-    2: np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2], [3, 4, 5]]),
-}
+#: Nodes along a side of a cell, less one, for displacements of low degree. From 4 on, where cells
+#: are few and large, as many as the degree.
+_FEWEST = 2
+#: Area, over that of the largest, below which a triangle is round-off between nodes of a side.
+_FLAT = 1e-6
 
 
 class FieldSampler:
     """Evaluates a discretisation's displacement and observables.
 
-    The output grid has the nodes of quadratic cells, joined by straight cells of half the size, so
-    that curved fields look curved. Fields with jumps between elements are averaged at the nodes,
-    each element weighing as its size.
+    The output grid has more nodes than the mesh, joined by straight cells of half the size or
+    less, so that curved fields look curved. Fields with jumps between elements are averaged at the
+    nodes, each element weighing as its size.
     """
 
     def __init__(
@@ -44,10 +44,11 @@ class FieldSampler:
         self._dimension = domain.topology.dim
         values = [discretisation.displacement[0], discretisation.displacement[1]]
         values += observables.values()
-        self._nodes = api.functionspace(domain, api.lagrange(2, (len(values),), domain))
-        self._expression = api.expression(
-            ufl.as_vector(values), api.interpolation_points(self._nodes)
-        )
+        order = _FEWEST if discretisation.degree < 4 else discretisation.degree
+        self._nodes = api.functionspace(domain, api.lagrange(order, (len(values),), domain))
+        nodes = api.interpolation_points(self._nodes)
+        self._straight = _straight_cells(nodes)
+        self._expression = api.expression(ufl.as_vector(values), nodes)
         owned = domain.topology.index_map(self._dimension).size_local
         self._cells = np.arange(owned, dtype=np.int32)
         self._dofs = api.cell_dofs(self._nodes)[self._cells]
@@ -60,7 +61,7 @@ class FieldSampler:
         index_map = self._nodes.dofmap.index_map
         numbers = index_map.local_to_global(self._dofs.ravel().astype(np.int32))
         cells = np.asarray(numbers).reshape(self._dofs.shape)
-        straight = cells[:, _STRAIGHT[self._dimension]].reshape(-1, self._dimension + 1)
+        straight = cells[:, self._straight].reshape(-1, self._dimension + 1)
         gathered = self._comm.gather(straight, root=0)
         owned = self._nodes.dofmap.index_map.size_local
         points = self._gather(self._nodes.tabulate_dof_coordinates()[:owned, :2])
@@ -101,6 +102,19 @@ class FieldSampler:
         if self._dimension == 1:
             return np.abs(sides[:, 0, 0])
         return 0.5 * np.abs(np.linalg.det(sides))
+
+
+def _straight_cells(nodes: Array) -> NDArray[np.int64]:
+    """Straight cells between the nodes (n, d) of the reference interval or triangle."""
+    if nodes.shape[1] == 1:
+        along = np.argsort(nodes[:, 0])
+        return np.column_stack([along[:-1], along[1:]])
+    # On the equilateral triangle, where the lattice of nodes has one triangulation.
+    corners = np.array([[1.0, 0.0], [0.5, np.sqrt(0.75)]])
+    triangles = Delaunay(nodes @ corners).simplices
+    a, b, c = (nodes[triangles[:, i]] for i in range(3))
+    area = np.abs(np.cross(b - a, c - a))
+    return triangles[area > _FLAT * area.max()].astype(np.int64)
 
 
 def _anticlockwise(points: Array, triangles: NDArray[np.int64]) -> NDArray[np.int64]:

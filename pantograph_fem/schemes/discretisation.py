@@ -64,6 +64,8 @@ class Discretisation:
     bent_gradient
         The placement gradient whose derivative is the curvature, shape (2, d); None where no
         effect sees curvature.
+    degree
+        Degree of the displacement.
     curvature_degree
         Degree of the curvatures, as far as they are polynomials.
     quadrature_degree
@@ -81,6 +83,7 @@ class Discretisation:
     densities: dict[str, Expr]
     displacement: Expr
     bent_gradient: Expr | None
+    degree: int
     curvature_degree: int
     quadrature_degree: int
     scales: Scales

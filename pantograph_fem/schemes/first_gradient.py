@@ -41,6 +41,7 @@ def first_gradient(
         densities=densities,
         displacement=u,
         bent_gradient=None,
+        degree=degree,
         curvature_degree=0,
         quadrature_degree=quadrature_degree,
         scales=scales,

@@ -103,6 +103,7 @@ def hinge(
         densities=densities,
         displacement=u,
         bent_gradient=F,
+        degree=degree,
         curvature_degree=degree - 2,
         quadrature_degree=quadrature_degree,
         scales=scales,

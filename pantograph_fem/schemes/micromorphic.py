@@ -86,6 +86,7 @@ def micromorphic(
         densities=densities,
         displacement=u,
         bent_gradient=bent,
+        degree=degree,
         curvature_degree=auxiliary_degree - 1,
         quadrature_degree=quadrature_degree,
         scales=scales,
