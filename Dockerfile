@@ -11,7 +11,7 @@ COPY apt-packages.txt /tmp/
 RUN apt-get update \
  && sed 's/#.*//' /tmp/apt-packages.txt \
     | xargs apt-get install -y --no-install-recommends \
-        python3-matplotlib python3-meshio python3-pydantic python3-rich \
+        python3-jinja2 python3-matplotlib python3-meshio python3-pydantic python3-rich \
         python3-setuptools python3-tomli-w python3-typer \
  && apt-get clean \
  && rm -rf /var/lib/apt/lists/* /tmp/apt-packages.txt

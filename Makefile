@@ -1,11 +1,13 @@
 # make run    installs what is missing and runs the bias extension test of Fig. 7
 # make test   installs what is missing, checks the code and runs the tests
 # make lint   style and types alone
+# make hard   runs the hard cases and puts their table into docs/hard_cases.md, in ten minutes
+# make docs   builds the reference of the Python interface into build/docs
 # make figures   draws the figures of README and docs anew, in half an hour
 
 SHELL := /bin/bash
 .DELETE_ON_ERROR:
-.PHONY: run test lint figures packages clean
+.PHONY: run test lint hard docs figures packages clean
 
 PYTHON := .venv/bin/python
 PACKAGES := $(shell sed 's/\#.*//' apt-packages.txt)
@@ -24,6 +26,13 @@ lint: .venv/installed
 	$(PYTHON) -m ruff check .
 	$(PYTHON) -m ruff format --check .
 	$(PYTHON) -m mypy
+
+hard: .venv/installed
+	.venv/bin/pantograph stress --docs docs/hard_cases.md
+
+docs: .venv/installed
+	$(PYTHON) -m sphinx -W --keep-going -q -d build/doctrees docs/api build/docs
+	@echo "build/docs/index.html"
 
 figures: .venv/installed
 	.venv/bin/pantograph run cases/a_bias_extension.toml --quiet
@@ -60,4 +69,4 @@ packages:
 	touch $@
 
 clean:
-	rm -rf .venv results .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf .venv build results .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -49,7 +49,7 @@ class Measured:
     @property
     def mesh(self) -> str:
         """Element sizes, mm."""
-        size, corner_size = (1e3 * value for value in self.sizes)
+        size, corner_size = (1e3 * value for value in self.sizes[:2])
         return f"{size:g}, uniform" if size == corner_size else f"{size:g} / {corner_size:g}"
 
 
@@ -120,7 +120,17 @@ def _versions(measured: list[Measured]) -> str:
 
 
 def _write(measured: list[Measured], path: Path) -> None:
-    names = ["program", "scheme", "size_m", "corner_size_m", "cells", "dofs", "steps", "tangents"]
+    names = [
+        "program",
+        "scheme",
+        "size_m",
+        "corner_size_m",
+        "growth",
+        "cells",
+        "dofs",
+        "steps",
+        "tangents",
+    ]
     names += ["cpu_seconds", "force_N", "force_error", "energy_J", "energy_error"]
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)

@@ -16,7 +16,7 @@ from pantograph_fem.study.machine import machine
 if TYPE_CHECKING:
     from compare_speed import Measured
 
-_MARKERS = "osD^v<>Ph"
+_MARKERS = "osD^v<>PhXp*"
 
 
 def draw(measured: Sequence[Measured], wanted: float, versions: str, path: Path) -> None:

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from series import GROWTH, PANTOGRAPH, Series, Sizes
+from series import PANTOGRAPH, Series, Sizes
 
 from pantograph_fem.case import load_case
 from pantograph_fem.mesh.rectangle import rectangle
@@ -87,21 +87,21 @@ class Programs:
 
     @staticmethod
     def _mesh(options: Sequence[str], sizes: Sizes, folder: Path) -> list[str]:
-        size, corner_size = sizes
+        size, corner_size, growth = sizes
         if size == corner_size:
             return ["--size", str(size)]
         if "bfs" in options:
             return ["--size", str(size), "--corner-size", str(corner_size)]
         sheet = load_case(CASE).sheet
-        mesh = rectangle(sheet.width, sheet.height, size, corner_size, growth=GROWTH)
+        mesh = rectangle(sheet.width, sheet.height, size, corner_size, growth=growth)
         file = folder / "mesh.npz"
         np.savez(file, points=mesh.points, triangles=mesh.triangles)
         return ["--mesh-file", str(file)]
 
 
 def _overrides(options: Sequence[str], sizes: Sizes) -> list[str]:
-    mesh = {"size": sizes[0], "corner_size": sizes[1], "growth": GROWTH}
-    return [*LEAN, *options, *(f"mesh.{key}={value}" for key, value in mesh.items())]
+    mesh = (f"mesh.{key}={value}" for key, value in sizes._asdict().items())
+    return [*LEAN, *options, *mesh]
 
 
 def _pantograph(options: Sequence[str], sizes: Sizes, folder: Path) -> Run:

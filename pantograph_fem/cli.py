@@ -10,10 +10,13 @@ import typer
 from . import __version__
 from .commands.check import check
 from .commands.compare import compare
+from .commands.identify import identify
 from .commands.plot import plot
 from .commands.processes import rank
 from .commands.run import run
+from .commands.stress import stress
 from .commands.study import study
+from .commands.sweep import sweep
 from .errors import PantographError
 
 app = typer.Typer(
@@ -23,7 +26,7 @@ app = typer.Typer(
     no_args_is_help=True,
     pretty_exceptions_enable=False,
 )
-for command in (run, check, plot, compare, study):
+for command in (run, check, plot, compare, study, sweep, stress, identify):
     app.command()(command)
 
 

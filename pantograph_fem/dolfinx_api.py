@@ -13,6 +13,7 @@ from collections.abc import Callable, Sequence
 from functools import wraps
 from typing import TYPE_CHECKING, Any, TypeVar
 
+import basix
 import numpy as np
 import ufl
 from numpy.typing import NDArray
@@ -20,7 +21,6 @@ from numpy.typing import NDArray
 from mpi4py import MPI
 from petsc4py import PETSc
 
-import basix
 import dolfinx
 import dolfinx.fem.petsc
 from dolfinx import fem, geometry, graph, io, la, mesh

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
@@ -13,13 +15,15 @@ from . import checkpoint
 from .adapt import MESH_FILE
 from .case import case_to_toml
 from .checkpoint import Saved
-from .errors import CaseError
+from .errors import CaseError, ResultsError
 from .parallel import at_root
 from .results.atomic import replace_text
+from .results.failure import FAILURE_FILE
 from .results.fields import FieldGrid
 from .results.fields_writer import FieldsWriter
 from .results.history import HistoryRow, HistoryWriter
 from .results.progress import Progress
+from .results.report import REPORT_FILE, write_report
 from .results.summary import package_versions, write_summary
 from .simulation import Simulation
 from .solve.continuation import Array, Step
@@ -67,6 +71,7 @@ class Recorder:
         )
         self._accuracy = accuracy
         self._critical: list[dict[str, object]] = []
+        self._cutbacks = 0
         self._history: HistoryWriter | None = None
         self._fields: FieldsWriter | None = None
         self._kept_rows = resumed.rows if resumed else 0
@@ -75,7 +80,7 @@ class Recorder:
         self.rows: list[HistoryRow] = []
 
     def __enter__(self) -> Recorder:
-        with self._clock("output"):
+        with self._clock("output"), self._explained("The first files"):
             grid = self._simulation.grid()
             at_root(self._comm, lambda: self._open(grid))
         self._progress.__enter__()
@@ -92,8 +97,14 @@ class Recorder:
             self._history.close()
 
     def accepted(self, step: Step) -> None:
-        """Write a state to the history and, if asked for, to the fields."""
-        with self._clock("output"):
+        """Write a state to the history and, if asked for, to the fields.
+
+        Raises
+        ------
+        ResultsError
+            If it cannot be written.
+        """
+        with self._clock("output"), self._explained(f"The state at load factor {step.load:.6g}"):
             observation = self._simulation.observe(step)
             wanted = self._case.output.fields
             marked = step.is_stop or step.critical is not None
@@ -120,12 +131,24 @@ class Recorder:
                 checkpoint.save(self._directory, self._comm, self._fingerprint, before)
 
     def rejected(self, load: float, step: float, reason: str) -> None:
-        """Show a step that was cut back."""
+        """Count and show a step that was cut back."""
+        self._cutbacks += 1
         self._progress.rejected(load, step, reason)
 
     def finish(self, status: str) -> None:
         """Draw the figures, write the summary and say how accurate the end of the path is."""
-        at_root(self._comm, lambda: self._finish(status))
+        with self._explained("The summary"):
+            at_root(self._comm, lambda: self._finish(status))
+
+    @contextmanager
+    def _explained(self, what: str) -> Iterator[None]:
+        try:
+            yield
+        except OSError as error:
+            raise ResultsError(
+                f"{what} could not be written to {self._directory}: {error.strerror or error}. "
+                "What was written before is kept. Make room there, and go on with --resume."
+            ) from error
 
     def _mode(self, step: Step) -> dict[str, Array] | None:
         """The lowest mode, if it is known, with the largest displacement of one."""
@@ -168,7 +191,8 @@ class Recorder:
 
     def _remove_stale(self) -> None:
         """Remove what an earlier run left and this one does not go on from."""
-        stale = [self._directory / "summary.json", *self._directory.glob("figures/*.png")]
+        stale = [self._directory / name for name in ("summary.json", FAILURE_FILE, REPORT_FILE)]
+        stale += self._directory.glob("figures/*.png")
         if not self._kept_states:
             stale += [self._directory / "fields.xdmf", self._directory / "fields.h5"]
         if self._accuracy is None:
@@ -195,6 +219,14 @@ class Recorder:
             with self._clock("output"):
                 plot(self._directory)
             self._write_summary(status)
+        if self._case.output.writes_report:
+            self._write_report()
+
+    def _write_report(self) -> None:
+        try:
+            write_report(self._directory)
+        except Exception as error:  # whatever it is, the results are complete without it
+            self._progress.note(f"Warning: {REPORT_FILE} could not be written: {error}")
 
     def _write_summary(self, status: str) -> None:
         write_summary(
@@ -208,4 +240,5 @@ class Recorder:
             message=self._accuracy.sentence() if self._accuracy else "",
             accuracy=self._accuracy.as_dict() if self._accuracy else None,
             critical_points=self._critical,
+            cutbacks=self._cutbacks,
         )

@@ -97,7 +97,7 @@ def solve(tmp_path_factory):
     """Run a variant of the coarse case with quadratic displacements, from case to results."""
     from pantograph_fem.case import case_from_dict
     from pantograph_fem.results.fields import read_fields
-    from pantograph_fem.run import run
+    from pantograph_fem.running import run
 
     base = merged(
         COARSE,

@@ -9,6 +9,7 @@ from pantograph_fem.lattice.end_load import EndLoad
 from pantograph_fem.lattice.equilibrium import LatticeEquilibrium
 from pantograph_fem.lattice.net import End, Net
 from pantograph_fem.physics.rigid_motion import RigidMotion
+from pantograph_fem.solve.failure import Remedies
 from pantograph_fem.solve.newton_settings import NewtonSettings
 from pantograph_fem.solve.path import NewtonPath
 from pantograph_fem.stopwatch import Stopwatch
@@ -51,8 +52,17 @@ class Toy:
     def objection(self, x, load):
         return ""
 
+    softest, remedies = 0, Remedies()
+
+    def soften(self, level):
+        pass
+
+    def locate(self, unknown):
+        return f"unknown {unknown}"
+
     def path(self, weights=None, **options):
-        return NewtonPath(self, NewtonSettings(), Stopwatch(), weights, **options)
+        shares = None if weights is None else lambda: weights
+        return NewtonPath(self, NewtonSettings(), Stopwatch(), shares, **options)
 
 
 def pitchfork(quartic=4.0, slope=0.0):

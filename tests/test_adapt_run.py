@@ -13,7 +13,7 @@ from pantograph_fem.adapt import MESH_FILE
 from pantograph_fem.case import case_from_dict, load_case
 from pantograph_fem.errors import CaseError
 from pantograph_fem.results.history import read_history
-from pantograph_fem.run import run
+from pantograph_fem.running import run
 
 from .conftest import COARSE, merged
 

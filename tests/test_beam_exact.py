@@ -11,7 +11,7 @@ from pantograph_fem.beam.simulation import BeamSimulation
 from pantograph_fem.case import case_from_dict, load_case
 from pantograph_fem.errors import PathError
 from pantograph_fem.results.fields import read_fields
-from pantograph_fem.run import run
+from pantograph_fem.running import run
 from pantograph_fem.solve.continuation import follow, start_at
 from pantograph_fem.solve.step_size import StepSettings
 from pantograph_fem.stopwatch import Stopwatch

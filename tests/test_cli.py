@@ -160,7 +160,8 @@ def test_plot_draws_the_figures_again(finished):
     done = pantograph("plot", "results/coarse", cwd=folder)
     assert (done.returncode, done.stderr) == (0, "")
     assert {path.name: path.read_bytes() for path in figures.iterdir()} == before
-    assert done.stdout.splitlines() == [f"results/coarse/figures/{name}" for name in sorted(before)]
+    figures = [f"results/coarse/figures/{name}" for name in sorted(before)]
+    assert done.stdout.splitlines() == [*figures, "results/coarse/report.html"]
 
 
 def test_check_accepts_a_case_in_under_a_second_without_dolfinx(tmp_path):

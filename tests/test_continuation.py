@@ -90,7 +90,7 @@ def test_a_limit_point_ends_the_path_with_what_was_found_before():
     with pytest.raises(PathError, match=r"beyond load factor 0\.38") as caught:
         collections.deque(map(found.append, path))
     assert limit - 2e-4 < found[-1].load < limit
-    assert "continuation.min_step" in str(caught.value)
+    assert "a finer mesh" in str(caught.value)
 
 
 def _only_upwards(problem, correct):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pantograph_fem.case import load_case
-from pantograph_fem.run import run
+from pantograph_fem.running import run
 from pantograph_fem.solve.origin import Origin
 
 ARC = Path(__file__).parents[1] / "cases" / "beam_arc.toml"

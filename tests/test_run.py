@@ -14,7 +14,7 @@ from pantograph_fem.case import case_from_dict, load_case
 from pantograph_fem.errors import CaseError, PathError
 from pantograph_fem.results.fields import read_fields
 from pantograph_fem.results.history import read_history
-from pantograph_fem.run import run
+from pantograph_fem.running import run
 
 from .conftest import COARSE, merged
 

@@ -15,7 +15,7 @@ from pantograph_fem.errors import PathError
 from pantograph_fem.plot import plot
 from pantograph_fem.results.fields import read_fields
 from pantograph_fem.results.history import header, read_history
-from pantograph_fem.run import run
+from pantograph_fem.running import run
 
 from .conftest import merged
 
@@ -199,7 +199,7 @@ def test_a_lattice_needs_no_finite_elements(tmp_path):
     script = (
         "import sys; from pathlib import Path\n"
         "from pantograph_fem.case import load_case\n"
-        "from pantograph_fem.run import run\n"
+        "from pantograph_fem.running import run\n"
         f"run(load_case(Path({str(path)!r})), Path({str(tmp_path / 'r')!r}), quiet=True)\n"
         "print([m for m in ('dolfinx', 'ufl', 'gmsh', 'meshio', 'matplotlib') if m in sys.modules])"
     )

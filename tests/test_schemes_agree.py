@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from pantograph_fem.case import load_case
-from pantograph_fem.run import run
+from pantograph_fem.running import run
 
 CASES = Path(__file__).parents[1] / "cases"
 

@@ -13,7 +13,7 @@ from pantograph_fem.case import case_from_dict
 from pantograph_fem.results.fields import read_fields
 from pantograph_fem.results.history import read_history
 from pantograph_fem.results.progress import Progress
-from pantograph_fem.run import run
+from pantograph_fem.running import run
 from pantograph_fem.solve.continuation import start_at
 from pantograph_fem.stopwatch import Stopwatch
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from mpi4py import MPI
@@ -15,6 +17,7 @@ from ..reporting import TIP_COLUMNS, history_row, tip_columns
 from ..results.fields import FieldGrid
 from ..simulation import Observation
 from ..solve.continuation import Array, Step
+from ..solve.failure import Remedies
 from ..solve.newton_settings import NewtonSettings
 from ..solve.path import NewtonPath
 from ..stopwatch import Stopwatch
@@ -44,13 +47,15 @@ class BeamSimulation:
         self._order = np.empty(0, dtype=int) if nodes is None else np.argsort(nodes[0][:, 0])
         self._nodes = None if nodes is None else nodes[0][self._order]
         self._probes = Probes(discretisation, axis.mesh, case.output.probes)
-        self._equilibrium = ContinuumEquilibrium(discretisation, supports, clock, check)
+        self._equilibrium = ContinuumEquilibrium(
+            discretisation, supports, clock, check, _remedies(case)
+        )
         options = case.continuation
         self.path = NewtonPath(
             self._equilibrium,
             NewtonSettings(options.tolerance, options.max_iterations),
             clock,
-            displacement_weights(discretisation, axis.mesh),
+            partial(displacement_weights, discretisation, axis.mesh),
             case.output.eigenvalues,
         )
         self.cells = int(axis.mesh.topology.index_map(1).size_global)
@@ -96,3 +101,11 @@ class BeamSimulation:
             probes=probes,
         )
         return Observation(row, fields)
+
+
+def _remedies(case: BeamCase) -> Remedies:
+    """What the case can change."""
+    missing = tuple(
+        f"material.{name}" for name in ("stretch", "bending") if not getattr(case.material, name)
+    )
+    return Remedies("a finer mesh (a smaller mesh.size)", missing)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping, Sequence
+from copy import deepcopy
 from pathlib import Path
 from typing import Any
 
@@ -49,7 +50,9 @@ def load_case(path: Path, overrides: Sequence[str] = ()) -> Case:
     return _validated(data, path.resolve().parent, source, problems)
 
 
-def case_from_dict(data: Mapping[str, Any], base: Path | None = None) -> Case:
+def case_from_dict(
+    data: Mapping[str, Any], base: Path | None = None, overrides: Sequence[str] = ()
+) -> Case:
     """Build a case from the tables of a case file.
 
     Parameters
@@ -58,13 +61,18 @@ def case_from_dict(data: Mapping[str, Any], base: Path | None = None) -> Case:
         The file's keys and sections, nested.
     base
         Folder from which a relative ``mesh.file`` starts; the current folder by default.
+    overrides
+        Values in place of those of the tables, each as ``key.path=value``.
 
     Raises
     ------
     CaseError
         When it does not describe a case; the message lists every problem.
     """
-    return _validated(data, base, "The case", [])
+    tables = deepcopy(dict(data))  # the caller's tables stay as they are
+    problems = apply_overrides(tables, overrides)
+    source = " ".join(["The case", *(f"--set {override}" for override in overrides)])
+    return _validated(tables, base, source, problems)
 
 
 def case_to_toml(case: Case) -> str:

@@ -7,13 +7,14 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Sequence
+from types import UnionType
 from typing import Any, Literal, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
 from ..errors import CaseError
-from .problem import PROBLEM, not_allowed, one_of, path_text
+from .problem import PROBLEM, Problem, not_allowed, one_of, path_text
 
 _NOUNS: dict[object, str] = {
     float: "a number",
@@ -33,21 +34,26 @@ def case_error(source: str, problems: Sequence[str]) -> CaseError:
 
 def explain(error: ValidationError, model: type[BaseModel]) -> list[str]:
     """One line for each problem that validating a `model` found."""
-    lines = []
+    return [f"{path_text(p.keys)}: {p.text}" for p in problems_of(error, model)]
+
+
+def problems_of(error: ValidationError, model: type[BaseModel]) -> list[Problem]:
+    """Each problem that validating a `model` found."""
+    problems = []
     for item in error.errors(include_url=False):
         kind, loc, value = item["type"], item["loc"], item["input"]
         if kind == PROBLEM:
-            lines += [f"{path_text(loc + p.keys)}: {p.text}" for p in item["ctx"]["problems"]]
+            problems += [Problem(p.text, loc + p.keys) for p in item["ctx"]["problems"]]
         elif kind == "extra_forbidden":
-            lines.append(f"{path_text(loc)}: {_unknown_key(model, loc)}")
+            problems.append(Problem(_unknown_key(model, loc), loc))
         elif kind == "missing":
-            lines.append(f"{path_text(loc)}: missing; {_requirement(model, loc)}")
+            problems.append(Problem(f"missing; {_requirement(model, loc)}", loc))
         elif kind == "default_factory_not_called":
             pass  # it follows from another error in the section
         else:
             rule = _rule(_field(model, loc), kind) or item["msg"]
-            lines.append(f"{path_text(loc)}: {not_allowed(value, rule)}")
-    return lines
+            problems.append(Problem(not_allowed(value, rule), loc))
+    return problems
 
 
 def _unknown_key(model: type[BaseModel], loc: tuple[int | str, ...]) -> str:
@@ -79,6 +85,8 @@ def _field(model: type[BaseModel], loc: tuple[int | str, ...]) -> FieldInfo | No
 
 def _section(field: FieldInfo | None) -> type[BaseModel] | None:
     annotation = field.annotation if field else None
+    if isinstance(annotation, UnionType):  # a section that may be absent
+        annotation = next(iter(set(get_args(annotation)) - {type(None)}), None)
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return annotation
     return None

@@ -32,6 +32,8 @@ class Output(Part):
         Whether the lowest eigenvalue of the tangent and its mode are found at every state.
     figures
         Whether figures are drawn.
+    report
+        Whether ``report.html`` is written; as `figures` by default.
     line_spacing
         Distance of the material lines in the figures, m; that of the beams of the paper's
         specimen by default.
@@ -41,7 +43,13 @@ class Output(Part):
     fields: Literal["all", "stops", "none"] = "all"
     eigenvalues: bool = False
     figures: bool = True
+    report: bool | None = None
     line_spacing: float = Field(default=0.0048, gt=0)
+
+    @property
+    def writes_report(self) -> bool:
+        """Whether a run ends with ``report.html``."""
+        return self.figures if self.report is None else self.report
 
     def check_probes(self, sheet: Sheet) -> None:
         """Raise when a probe lies outside the rectangle."""

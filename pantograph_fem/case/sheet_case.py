@@ -10,6 +10,7 @@ from pydantic import Field, ValidationInfo, field_validator
 from .continuation import Continuation
 from .discretisation import Discretisation
 from .gripped_case import GrippedCase
+from .measurements import Measurements, check_places
 from .mesh import Mesh
 from .output import Output
 
@@ -23,6 +24,7 @@ class SheetCase(GrippedCase):
     discretisation: Discretisation = Field(default_factory=Discretisation)
     continuation: Continuation = Continuation()
     output: Output = Output()
+    measurements: Measurements = Field(default_factory=dict)
 
     @property
     def input_files(self) -> tuple[Path, ...]:
@@ -44,3 +46,13 @@ class SheetCase(GrippedCase):
         if sheet is not None and mesh is not None and mesh.file is None:
             output.check_probes(sheet)
         return output
+
+    @field_validator("measurements")
+    @classmethod
+    def _measured_in_the_sheet(
+        cls, measurements: Measurements, info: ValidationInfo
+    ) -> Measurements:
+        sheet, mesh = info.data.get("sheet"), info.data.get("mesh")
+        if sheet is not None and mesh is not None and mesh.file is None:
+            check_places(measurements, sheet)
+        return measurements

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from ..case import Case
-    from ..run import RunResult
+    from ..running import RunResult
 
 
 def compare(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from ..run import RunResult
+    from ..running import RunResult
 
 
 def solver() -> Callable[..., RunResult]:
@@ -22,6 +22,6 @@ def solver() -> Callable[..., RunResult]:
 
     # A closed pipe or an interrupt is no crash: no PETSc report of a segmentation fault.
     petsc4py.init(["pantograph", "-no_signal_handler"])
-    from ..run import run
+    from ..running import run
 
     return run

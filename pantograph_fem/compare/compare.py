@@ -71,8 +71,8 @@ def compare(
     rerun
         Run every case again.
     runner
-        Gives what simulates a case, `pantograph_fem.run.run` by default; called only if there is
-        one to simulate.
+        Gives what simulates a case, `pantograph_fem.running.run` by default; called only if there
+        is one to simulate.
     tell
         Called with a line before each run.
 
@@ -123,6 +123,6 @@ def write(comparison: Comparison, directory: Path) -> list[Path]:
 
 
 def _quiet_runner() -> Runner:
-    from ..run import run  # dolfinx is imported only for a case that must be run
+    from ..running import run  # dolfinx is imported only for a case that must be run
 
     return lambda case, directory: run(case, directory, quiet=True)

@@ -15,7 +15,7 @@ from ..errors import CaseError, PathError
 from ..results.history import read_history
 from .plan import Entry
 
-#: Simulates a case and writes its results to a folder, as `pantograph_fem.run.run` does.
+#: Simulates a case and writes its results to a folder, as `pantograph_fem.running.run` does.
 Runner = Callable[[Case, Path], object]
 
 #: Status of a run that reached its full load.

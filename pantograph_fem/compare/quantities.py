@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ..case.messages import case_error
 from ..case.problem import not_allowed
+from ..results.units import column_unit as unit
 from .outcome import Outcome
 
 Array = NDArray[np.float64]
@@ -22,19 +23,6 @@ _NEGLIGIBLE = 1e-8
 
 #: The same for a difference; what is left of it is the rounding of the numbers themselves.
 ROUNDING = 1e-12
-
-_UNITS = {
-    r"force(_[xy])?": "N",
-    r"moment": "N m",
-    r"energy(_\w+)?": "J",
-    r"\w+_u[xy]": "m",
-    r"shear_(min|max)|\w+_angle": "rad",
-}
-
-
-def unit(quantity: str) -> str:
-    """Unit of a quantity; empty for a number."""
-    return next((u for pattern, u in _UNITS.items() if re.fullmatch(pattern, quantity)), "")
 
 
 def values(outcome: Outcome, quantity: str) -> Array | None:

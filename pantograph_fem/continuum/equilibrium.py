@@ -16,8 +16,10 @@ from dolfinx import fem
 from .. import dolfinx_api as api
 from ..physics.reaction import Reaction
 from ..schemes import Discretisation
+from ..solve.failure import Remedies
 from ..solve.origin import Origin
 from ..stopwatch import Stopwatch
+from .softening import Softening
 from .support import Support
 
 Array = NDArray[np.float64]
@@ -35,9 +37,16 @@ class ContinuumEquilibrium:
         supports: Sequence[Support],
         clock: Stopwatch | None = None,
         check: Callable[[], str] | None = None,
+        remedies: Remedies | None = None,
     ) -> None:
-        """Compile the forms; `check` objects to the discretisation's present state, or not."""
+        """Compile the forms.
+
+        `check` objects to the discretisation's present state, or not; `remedies` are what a user
+        can change.
+        """
         self._check = check
+        self.remedies = remedies or Remedies()
+        self._softening = Softening(discretisation.energy)
         self.discretisation = discretisation
         self.supports = supports
         self._clock = clock or Stopwatch()
@@ -77,6 +86,11 @@ class ContinuumEquilibrium:
         self._energies = {name: api.form(energy) for name, energy in energies.items()}
         pulls = [support.pull for support in self.supports if support.pull is not None]
         self._pull = api.form(ufl.derivative(sum(pulls), self._state)) if pulls else None
+
+    @property
+    def held_dofs(self) -> NDArray[np.int32]:
+        """Owned dofs that the supports hold."""
+        return self._owned_dofs
 
     @property
     def typical_sizes(self) -> Array:
@@ -151,16 +165,11 @@ class ContinuumEquilibrium:
         with self._clock("assemble"):
             self._extrapolate(Origin(x, np.zeros_like(x)))
             self.load_state(x, load)
-            self._data.x.array[:] = 0.0
-            for support in self.supports:
-                self._data.x.array[support.dofs] = support.rates(load)
-            if self._pull is None:
-                self._vector.array[:] = 0.0
-            else:
+            rate = np.zeros(self._owned)
+            if self._pull is not None:
                 api.assemble_vector(self._vector, self._pull)
-                self._vector.array[self._owned :] = 0.0  # the lifting adds its ghosts once more
-            api.lift(self._vector, self._tangent, self._bcs)
-            rate = self._vector.array[: self._owned].copy()
+                rate[:] = self._vector.array[: self._owned]
+            rate += self._forces_of(lambda support: support.rates(load))
             rate[self._owned_dofs] = self._data.x.array[self._owned_dofs]
         return rate
 
@@ -174,19 +183,42 @@ class ContinuumEquilibrium:
 
     def reactions(self, x: Array, load: float) -> list[Reaction]:
         """What each support exerts: the work of the residual on its virtual rigid motions."""
-        self.load_state(x, load)
-        api.assemble_vector(self._vector, self._residual)
+        forces = self.forces(x, load)
         return [
             Reaction(
                 (
-                    self._work(support, support.virtual_translation(0)),
-                    self._work(support, support.virtual_translation(1)),
+                    self.work(support, support.virtual_translation(0), forces),
+                    self.work(support, support.virtual_translation(1), forces),
                 ),
-                self._work(support, support.virtual_rotation(load)),
+                self.work(support, support.virtual_rotation(load), forces),
             )
             + support.exerted()
             for support in self.supports
         ]
+
+    def forces(self, x: Array, load: float) -> Array:
+        """Gradient of the functional; at held dofs, what the supports exert there."""
+        self.load_state(x, load)
+        api.assemble_vector(self._vector, self._residual)
+        return self._vector.array[: self._owned].copy()
+
+    def work(self, support: Support, virtual: Array, forces: Array) -> float:
+        """Work of the forces on a virtual displacement of a support's dofs."""
+        mine = support.dofs < self._owned
+        return self._comm.allreduce(float(forces[support.dofs[mine]] @ virtual[mine]), MPI.SUM)
+
+    def work_rate(self, x: Array, load: float, support: Support, virtual: Array) -> Array:
+        """Derivative of that work with respect to the free unknowns; zero at the held dofs."""
+        with self._clock("assemble"):
+            self._extrapolate(Origin(x, np.zeros_like(x)))
+            self.load_state(x, load)
+            rate = -self._forces_of(lambda one: virtual if one is support else 0.0)
+            rate[self._owned_dofs] = 0.0
+        return rate
+
+    def sum(self, shares: Array) -> Array:
+        """Sum of what the processes have of some numbers."""
+        return self._comm.allreduce(shares, MPI.SUM)
 
     def objection(self, x: Array, load: float) -> str:
         """What the check has against a state; empty where it has nothing."""
@@ -194,6 +226,24 @@ class ContinuumEquilibrium:
             return ""
         self.load_state(x, load)
         return self._check()
+
+    @property
+    def softest(self) -> int:
+        """Level of the smoothest pivots; 0 where they are smooth."""
+        return self._softening.softest
+
+    def soften(self, level: int) -> None:
+        """Have the pivots of a level; 0 are those of the case."""
+        self._softening.set(level)
+
+    def locate(self, unknown: int) -> str:
+        """Field and reference position of an owned dof, as "displacement at (0, 0.1) m"."""
+        for field in self.discretisation.fields:
+            blocks = np.flatnonzero((field.dofs == unknown).any(axis=1))
+            if len(blocks):
+                x, y = field.coordinates[blocks[0]]
+                return f"{field.name} at ({x:.4g}, {y:.4g}) m"
+        raise IndexError(f"dof {unknown} belongs to no field")
 
     def load_state(self, x: Array, load: float) -> None:
         """Put x into the state function, ghosts included, and move the supports."""
@@ -209,8 +259,11 @@ class ContinuumEquilibrium:
             function.x.array[: self._owned] = values
             function.x.scatter_forward()
 
-    def _work(self, support: Support, virtual: Array) -> float:
-        mine = support.dofs < self._owned
-        return self._comm.allreduce(
-            float(self._vector.array[support.dofs[mine]] @ virtual[mine]), MPI.SUM
-        )
+    def _forces_of(self, displaced: Callable[[Support], Array | float]) -> Array:
+        """Minus what it takes to hold the free dofs while the supports' dofs are displaced."""
+        self._data.x.array[:] = 0.0
+        for support in self.supports:
+            self._data.x.array[support.dofs] = displaced(support)
+        self._vector.array[:] = 0.0
+        api.lift(self._vector, self._tangent, self._bcs)
+        return self._vector.array[: self._owned].copy()

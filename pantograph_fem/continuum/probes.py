@@ -29,8 +29,14 @@ class Probes:
         self,
         discretisation: Discretisation,
         domain: mesh.Mesh,
-        points: Sequence[tuple[float, float]],
+        points: Sequence[tuple[float, float]] | Array,
+        keys: Sequence[str] | None = None,
     ) -> None:
+        """Find the points; a collective call.
+
+        `keys` are those of the case file that ask for each point, for what is said of one that is
+        outside: by default ``output.probes[i]``.
+        """
         field = discretisation.field("displacement")
         assert field is not None  # every scheme has one
         self._field = field
@@ -43,9 +49,10 @@ class Probes:
         missing = ~np.any(self._owner, axis=0)
         if missing.any():
             i = int(np.flatnonzero(missing)[0])
+            key, what = (f"output.probes[{i}]", "a probe") if keys is None else (keys[i], "it")
             raise CaseError(
-                f"output.probes[{i}]: {list(points[i])} is outside the sheet; "
-                "a probe is a reference point of the sheet, in m"
+                f"{key}: {self._points[i].tolist()} is outside the sheet; "
+                f"{what} is a reference point of the sheet, in m"
             )
         self._cells = cells
         self._displacement = fem.Function(field.space)

@@ -12,6 +12,7 @@ from petsc4py import PETSc
 
 from ..physics.reaction import NO_REACTION, Reaction
 from ..physics.rigid_motion import RigidMotion
+from ..solve.failure import Remedies
 from ..solve.origin import Origin
 from ..stopwatch import Stopwatch
 from .assembly import TangentRows
@@ -160,6 +161,27 @@ class LatticeEquilibrium:
     def objection(self, x: Array, load: float) -> str:
         """Nothing: springs resist whatever could be objected to."""
         return ""
+
+    @property
+    def softest(self) -> int:
+        """There is no easier net."""
+        return 0
+
+    def soften(self, level: int) -> None:
+        """Nothing: there is one level."""
+
+    @property
+    def remedies(self) -> Remedies:
+        """Other springs, and more of them."""
+        net = self.net
+        springs = {"stretch": net.stiffness, "bending": net.turns, "shear": net.pivots}
+        missing = tuple(f"material.{name}" for name, group in springs.items() if group is None)
+        return Remedies("more nodes (a smaller lattice.spacing)", missing)
+
+    def locate(self, unknown: int) -> str:
+        """Reference position of the node that an owned unknown displaces."""
+        x, y = self.net.nodes[self._first + unknown // 2]
+        return f"displacement at ({x:.4g}, {y:.4g}) m"
 
     def energies(self, x: Array, load: float) -> dict[str, float]:
         """Stored energy of each effect, J; the load factor tells how far walls have turned."""

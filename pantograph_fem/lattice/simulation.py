@@ -51,7 +51,7 @@ class NetSimulation:
             self._equilibrium,
             NewtonSettings(options.tolerance, options.max_iterations),
             clock,
-            np.full_like(self._equilibrium.typical_sizes, 1.0 / problem.net.size),
+            lambda: np.full_like(self._equilibrium.typical_sizes, 1.0 / problem.net.size),
             case.output.eigenvalues,
         )
         self.cells = len(problem.net.links)

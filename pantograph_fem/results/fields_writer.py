@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from ..errors import CaseError
 from .fields import H5_NAME, XDMF_NAME, FieldGrid, read_fields
+from .space import require_space
 from .xdmf import Dataset, StateEntry, XdmfIndex
 
 Array = NDArray[np.float64]
@@ -54,6 +55,7 @@ class FieldsWriter:
         else:
             directory.mkdir(parents=True, exist_ok=True)
             (directory / XDMF_NAME).unlink(missing_ok=True)  # what it lists is about to go
+            require_space(directory, 2 * (grid.points.nbytes + grid.cells.nbytes))
             with h5py.File(directory / H5_NAME, "w") as file:
                 file["points"] = _padded(grid.points)
                 file["cells"] = grid.cells.astype(np.int64)
@@ -80,12 +82,16 @@ class FieldsWriter:
         ------
         ValueError
             If a field has another shape.
+        OSError
+            If the disk is full; nothing is changed then.
         """
         arrays = _checked(fields, self._nodes)
         cell_arrays = {f"cells/{name}": a for name, a in _checked(cell_fields, self._cells).items()}
+        new = arrays | cell_arrays
+        require_space(self._directory, sum(values.nbytes for values in new.values()))
         # Closed after each step: while it is open it is locked, and nobody could look at it.
         with h5py.File(self._directory / H5_NAME, "r+") as file:
-            group = append_step(file, self._count, arrays | cell_arrays)
+            group = append_step(file, self._count, new)
         self._list(
             StateEntry(
                 load=float(load),

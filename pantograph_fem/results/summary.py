@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import platform
 import sys
 from collections.abc import Mapping, Sequence
@@ -11,6 +10,7 @@ from pathlib import Path
 
 from .atomic import replace_text
 from .history import HistoryRow
+from .strict_json import to_json
 
 DONE = "done"
 CRITICAL = "stopped at a critical load"
@@ -41,6 +41,7 @@ def write_summary(
     message: str = "",
     accuracy: Mapping[str, object] | None = None,
     critical_points: Sequence[Mapping[str, object]] = (),
+    cutbacks: int = 0,
 ) -> None:
     """Write ``summary.json`` in one step, so that it is never half a file.
 
@@ -53,7 +54,7 @@ def write_summary(
         reason.
     last
         The last accepted state, None if there was none; written with the columns of
-        ``history.csv``.
+        ``history.csv``, null where one is no number.
     dofs
         Number of degrees of freedom by field.
     cells
@@ -68,6 +69,8 @@ def write_summary(
         What was asked of an adapted mesh and what it reached; None, and left out, for others.
     critical_points
         Step, load and kind of each critical point; left out where there is none.
+    cutbacks
+        Number of steps that were rejected and tried again with a smaller one.
 
     Raises
     ------
@@ -85,6 +88,7 @@ def write_summary(
         "last": None if last is None else last.columns(),
         "dofs": {name: int(number) for name, number in dofs.items()},
         "cells": int(cells),
+        "cutbacks": int(cutbacks),
         "seconds": {phase: round(float(seconds.get(phase, 0.0)), 3) for phase in PHASES},
         "versions": dict(versions),
     }
@@ -92,7 +96,7 @@ def write_summary(
         summary["accuracy"] = dict(accuracy)
     if critical_points:
         summary["critical_points"] = [dict(point) for point in critical_points]
-    replace_text(path, json.dumps(summary, indent=2, ensure_ascii=False) + "\n")
+    replace_text(path, to_json(summary))
 
 
 def package_versions() -> dict[str, str]:

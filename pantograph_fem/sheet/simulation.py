@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from functools import cached_property
+from functools import cached_property, partial
+from typing import TYPE_CHECKING
 
 from mpi4py import MPI
 
@@ -17,13 +18,18 @@ from ..reporting import history_row
 from ..results.fields import FieldGrid
 from ..simulation import Observation
 from ..solve.continuation import Array, Step
+from ..solve.failure import Remedies
 from ..solve.newton_settings import NewtonSettings
 from ..solve.path import NewtonPath
 from ..stopwatch import Stopwatch
 from .build import build_domain, build_grips, discretise_sheet
 from .domain import GRIPS
+from .fold import FoldCheck
 from .grip import GripSupport
 from .observables import sheet_observables
+
+if TYPE_CHECKING:
+    from .measurements import SheetMeasurements
 
 _REPORTED = GRIPS.index("top")
 
@@ -51,14 +57,24 @@ class SheetSimulation:
             discretisation = discretise_sheet(case, domain)
         self._domain = domain.mesh
         self._probes = Probes(discretisation, domain.mesh, case.output.probes)
+        self.measurements: SheetMeasurements | None = None
+        if case.measurements:
+            from .measurements import SheetMeasurements
+
+            self.measurements = SheetMeasurements(case, discretisation, domain.mesh)
+            self.extra_columns = self.measurements.columns
         supports = [GripSupport(grip, discretisation) for grip in build_grips(case, domain)]
-        self.equilibrium = ContinuumEquilibrium(discretisation, supports, clock)
+        with clock("compile"):
+            check = FoldCheck(discretisation, domain.mesh)
+        self.equilibrium = ContinuumEquilibrium(
+            discretisation, supports, clock, check, _remedies(case)
+        )
         options = case.continuation
         self.path = NewtonPath(
             self.equilibrium,
             NewtonSettings(options.tolerance, options.max_iterations),
             clock,
-            displacement_weights(discretisation, domain.mesh),
+            partial(displacement_weights, discretisation, domain.mesh),
             case.output.eigenvalues,
         )
         self.cells = int(domain.mesh.topology.index_map(2).size_global)
@@ -96,10 +112,22 @@ class SheetSimulation:
         reaction = self.reaction(step.x, step.load)
         energies = self.equilibrium.energies(step.x, step.load)
         probes = self._probes.displacements()
+        readings = None if self.measurements is None else self.measurements.read()
         fields = self._sampler.sample()
         if fields is None:
             return None
         angles = fields["shear_angle"]
         shear = float(angles.min()), float(angles.max())
-        row = history_row(step, reaction, energies, shear=shear, probes=probes)
+        row = history_row(step, reaction, energies, shear=shear, probes=probes, extra=readings)
         return Observation(row, fields)
+
+
+def _remedies(case: SheetCase) -> Remedies:
+    """What the case can change."""
+    own = case.mesh.file is not None
+    missing = tuple(
+        f"material.{name}"
+        for name in ("stretch", "bending", "shear")
+        if not getattr(case.material, name)
+    )
+    return Remedies("a finer mesh" if own else "a finer mesh (a smaller mesh.corner_size)", missing)

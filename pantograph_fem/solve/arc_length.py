@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 
 from ..errors import PathError
 from .arc import Arc, Parabola, Point
+from .cause import Cause
 from .continuation import Rejected
 from .critical import CriticalPoint, JumpError
+from .ending import linearise_first, no_way_on
 from .equilibrium import Array, Correction, Linearisation, ModalEquilibrium
-from .instability import (
-    Change,
-    OnInstability,
-    critical_point,
-    leave,
-    leaves_at,
-    put_on_stop,
-)
+from .instability import Change, OnInstability, critical_point, decide, leave
 from .origin import Origin
 from .predictor import PathPoint
 from .step_size import StepSettings, StepSize
@@ -46,13 +42,13 @@ def follow_arc_length(
     Raises
     ------
     PathError
-        Where the smallest step fails too, where no branch is found, or where `max_steps` are done
-        before the last stop is reached.
+        Where the smallest step fails too, with a report; where no branch is found; or where
+        `max_steps` are done before the last stop is reached.
     """
     size = StepSize(settings, start.step_size)
     arc = Arc.from_rest(problem, rest)
     points, number, iterations = start.points[-2:], start.number, start.iterations
-    linearisation = problem.linearise(points[-1].x, points[-1].load)
+    linearisation = linearise_first(problem, points[-1].x, points[-1].load, problem)
     while True:
         here = PathPoint(points[-1].load, linearisation.x, linearisation.rate)
         points = (*points[:-1], here)
@@ -65,15 +61,14 @@ def follow_arc_length(
         before = here
         end, new, point = _advance(arc, points, linearisation, size, on_rejected)
         if point is not None:
-            lost = linearisation.stable
-            leaves = leaves_at(point, lost, on_instability)
-            if leaves:
-                point = put_on_stop(point, end, new, settings.stops)
+            change = Change(here.load, linearisation, end.load, new)
+            decision = decide(point, change, end, on_instability, settings.stops)
+            point = decision.point
             number += 1
             yield critical_step(number, point, checkpoint, settings)
-            if (lost and on_instability == "stop") or size.finished(point.load):
+            if decision.ends or size.finished(point.load):
                 return
-            if leaves:
+            if decision.leaves:
                 branch = leave(problem, point, size.next_stop(point.load), upwards=False)
                 end, new = branch.correction, branch.linearisation
                 before = PathPoint(point.load, point.x, point.linearisation.rate)
@@ -95,7 +90,7 @@ def _advance(
     here = points[-1]
     ahead = Parabola.through(arc, points, linearisation.rate)
     while True:
-        step, reason = size.value, ""
+        step = size.value
         found = _try(arc, ahead, step, size.next_stop(here.load), size.settings.min_step)
         if found.converged:
             new = arc.problem.linearise(found.x, found.load)
@@ -107,17 +102,11 @@ def _advance(
                 between = _between(arc, here, found)
                 return found, new, critical_point(arc.problem, change, between, length)
             except JumpError as error:
-                reason = str(error)
-        reason = reason or found.reason
+                found = _elsewhere(found, str(error))
         if on_rejected is not None:
-            on_rejected(ahead.at(step).load, step, reason)
+            on_rejected(ahead.at(step).load, step, found.reason)
         if not size.rejected(step):
-            raise PathError(
-                f"The path could not be followed beyond load factor {here.load:.6g}: the smallest "
-                f"step along it, of {step:.6g}, failed because {reason}. Every state up to there "
-                "is saved. Try a smaller continuation.min_step, a larger "
-                "continuation.max_iterations, or a finer mesh."
-            )
+            raise no_way_on(points, step, found, arc.problem, along_arc=True)
 
 
 def _try(arc: Arc, ahead: Parabola, step: float, stop: float, least: float) -> Correction:
@@ -138,8 +127,11 @@ def _unless_far(arc: Arc, found: Correction, expected: Point, step: float) -> Co
     away = arc.length(found.x - expected.x, found.load - expected.load)
     if not found.converged or away <= _MISS * step:
         return found
-    reason = "the state found is too far from where the path was heading"
-    return Correction(found.load, found.x, False, found.iterations, reason)
+    return _elsewhere(found, "the state found is too far from where the path was heading")
+
+
+def _elsewhere(found: Correction, reason: str) -> Correction:
+    return replace(found, converged=False, reason=reason, cause=Cause.ELSEWHERE)
 
 
 def _between(arc: Arc, here: PathPoint, end: Correction) -> Callable[[float], Correction]:

@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from ..errors import PathError
+from .cause import Cause
 from .equilibrium import Array, Correction, Plane
 from .factor_reuse import FactorReuse
 from .metric import Metric
@@ -46,7 +47,7 @@ class BorderedNewton:
         try:
             return self._solve(plane)
         except PathError as error:  # a factorisation that failed
-            return Correction(plane.load, plane.x, False, self._most, str(error))
+            return _failure(plane.load, plane.x, self._most, str(error), Cause.SINGULAR)
 
     def _solve(self, plane: Plane) -> Correction:
         load, origin = plane.load, plane.origin
@@ -64,7 +65,7 @@ class BorderedNewton:
                 step = a + change * b
                 error = max(self._metric.largest(step), abs(change))
                 if not np.isfinite(error):
-                    return Correction(load, x, False, iterations, "the residual is not a number")
+                    return _failure(load, x, iterations, "the residual is not a number")
                 origin = Origin(x, step)
                 x, load = x + step, load + change
                 x = self._problem.impose(x, load)
@@ -73,11 +74,19 @@ class BorderedNewton:
                     return self._accept(x, load, iterations)
                 away = max(self._metric.largest(x - plane.x), abs(load - plane.load))
                 if away > _LOST:
-                    return Correction(load, x, False, iterations, "the iteration diverged")
+                    return _failure(load, x, iterations, "the iteration diverged")
                 if not self._policy.keep(error):
                     break
-        return Correction(load, x, False, self._most, "no convergence within max_iterations")
+        reason = "no convergence within max_iterations"
+        return _failure(load, x, self._most, reason, Cause.ITERATIONS)
 
     def _accept(self, x: Array, load: float, iterations: int) -> Correction:
         reason = self._problem.objection(x, load)
-        return Correction(load, x, not reason, iterations, reason or "converged")
+        cause = Cause.OBJECTION if reason else None
+        return Correction(load, x, not reason, iterations, reason or "converged", cause)
+
+
+def _failure(
+    load: float, x: Array, iterations: int, reason: str, cause: Cause = Cause.DIVERGED
+) -> Correction:
+    return Correction(load, x, False, iterations, reason, cause)

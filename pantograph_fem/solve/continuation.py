@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 
-from ..errors import PathError
 from .critical import JumpError
+from .ending import linearise_first, no_way_on
 from .equilibrium import (
     Array,
     Correction,
@@ -18,14 +18,8 @@ from .equilibrium import (
     Linearisation,
     ModalEquilibrium,
 )
-from .instability import (
-    Change,
-    OnInstability,
-    critical_point,
-    leave,
-    leaves_at,
-    put_on_stop,
-)
+from .instability import Change, OnInstability, critical_point, decide, leave
+from .ladder import rescue
 from .predictor import PathPoint, PredictorName, predict
 from .step_size import StepSettings, StepSize
 from .steps import Checkpoint, Step, accepted_step, critical_step, start_at
@@ -65,17 +59,18 @@ def follow(
 
     With `watch`, the same problem, the critical point is then located, and is a step of its own.
     There `on_instability` says whether to "follow" the path, to "stop", or to "branch": to go on,
-    at a bifurcation, along the stable path that branches off.
+    at a bifurcation, along the stable path that branches off. Before a smallest step is given up,
+    other ways to its end are tried, see :func:`pantograph_fem.solve.ladder.rescue`.
 
     Raises
     ------
     PathError
-        Where the smallest step fails too, or no stable branch is found.
+        Where the smallest step fails too, with a report; or no stable branch is found.
     """
     size = StepSize(settings, start.step_size)
     *earlier, here = start.points
     number, iterations = start.number, start.iterations
-    linearisation = problem.linearise(here.x, here.load)
+    linearisation = linearise_first(problem, here.x, here.load, watch)
     while True:
         here = PathPoint(here.load, linearisation.x, linearisation.rate)
         points = (*earlier[-1:], here)
@@ -84,7 +79,7 @@ def follow(
         if size.finished(here.load):
             return
         correction, new = _advance(
-            problem, points, size, predictor, linearisation.stable, on_rejected
+            problem, points, size, predictor, linearisation.stable, on_rejected, watch
         )
         earlier = [here]
         if watch is not None and new.stable != linearisation.stable:
@@ -94,14 +89,13 @@ def follow(
             with suppress(JumpError):  # it was as small a step as there is
                 point = critical_point(watch, change, between)
             if point is not None:
-                leaves = leaves_at(point, change.lost, on_instability)
-                if leaves:
-                    point = put_on_stop(point, correction, new, settings.stops)
+                decision = decide(point, change, correction, on_instability, settings.stops)
+                point = decision.point
                 number += 1
                 yield critical_step(number, point, checkpoint, settings)
-                if (change.lost and on_instability == "stop") or size.finished(point.load):
+                if decision.ends or size.finished(point.load):
                     return
-                if leaves:
+                if decision.leaves:
                     branch = leave(watch, point, size.next_stop(point.load))
                     correction, new = branch.correction, branch.linearisation
                     earlier = []
@@ -135,6 +129,7 @@ def _advance(
     predictor: PredictorName,
     stable: bool,
     on_rejected: Rejected | None,
+    watch: ModalEquilibrium | None,
 ) -> tuple[Correction, Linearisation]:
     """The next state that is accepted, after as many cut-backs as it takes."""
     last = points[-1].load
@@ -147,16 +142,10 @@ def _advance(
             if not (lost and size.rejected(load - last, size.settings.critical_step)):
                 return correction, linearisation
         elif not size.rejected(load - last):
-            raise PathError(_give_up(last, load, correction.reason))
+            rescued = rescue(watch, predictor, points, load, stable) if watch else None
+            if rescued is None:
+                raise no_way_on(points, load - last, correction, watch)
+            return rescued
         if on_rejected is not None:
             reason = "the state found is unstable" if correction.converged else correction.reason
             on_rejected(load, load - last, reason)
-
-
-def _give_up(last: float, load: float, reason: str) -> str:
-    return (
-        f"No equilibrium was found beyond load factor {last:.6g}: the smallest step, to "
-        f"{load:.6g}, failed because {reason}. Every state up to {last:.6g} is saved. "
-        "Try a smaller continuation.min_step, a larger continuation.max_iterations, "
-        'or a finer mesh; where the path turns back, continuation.method = "arc_length".'
-    )

@@ -8,6 +8,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from .cause import Cause
+from .failure import Diagnosis, Remedies
 from .origin import Origin
 
 Array = NDArray[np.float64]
@@ -15,13 +17,19 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Correction:
-    """Outcome of a corrector: the state where it converged, why not where it did not."""
+    """Outcome of a corrector: the state where it converged, why not where it did not.
+
+    `residuals` holds the norm of the scaled residual before each step of the last attempt and
+    after it.
+    """
 
     load: float
     x: Array
     converged: bool
     iterations: int
     reason: str
+    cause: Cause | None = None
+    residuals: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +112,7 @@ class Equilibrium(Protocol):
 
 
 class ModalEquilibrium(Equilibrium, Protocol):
-    """What is needed besides to locate critical points, to switch branches and to follow arcs."""
+    """What is needed besides for critical points, branches, arcs and where a path is in trouble."""
 
     def analyse(self, x: Array, load: float) -> Linearisation:
         """As `linearise`, with the lowest mode."""
@@ -114,3 +122,20 @@ class ModalEquilibrium(Equilibrium, Protocol):
 
     def inner(self, a: Array, b: Array) -> float:
         """Mean product of the displacements of two states, in typical sizes."""
+
+    @property
+    def softest(self) -> int:
+        """Level of the easiest problem that `correct_softly` can set out from; 0 is this one."""
+
+    @property
+    def remedies(self) -> Remedies:
+        """What a user can change."""
+
+    def correct_exactly(self, guess: Array, load: float) -> Correction:
+        """As `correct`, with a line search that tries harder."""
+
+    def correct_softly(self, guess: Array, load: float, level: int) -> Correction:
+        """As `correct`, by way of easier problems from the one of a level down to this one."""
+
+    def diagnose(self, last: Array, last_load: float, failed: Correction) -> Diagnosis:
+        """What can be told about a failed correction and the last accepted state."""

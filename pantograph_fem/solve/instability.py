@@ -62,12 +62,34 @@ def critical_point(
     return locate(problem, known_at, loads, length, change.lost)
 
 
-def leaves_at(point: CriticalPoint, lost: bool, on_instability: OnInstability) -> bool:
-    """Whether the path is left at a critical point, where stability is `lost` or regained."""
-    return lost and on_instability == "branch" and point.kind == "bifurcation"
+@dataclass(frozen=True, eq=False)
+class Decision:
+    """What is done at a critical point: whether the path is left there, or ends there."""
+
+    point: CriticalPoint
+    leaves: bool
+    ends: bool
 
 
-def put_on_stop(
+def decide(
+    point: CriticalPoint,
+    change: Change,
+    end: Correction,
+    on_instability: OnInstability,
+    stops: Sequence[float],
+) -> Decision:
+    """What the user wants at a critical point, of which `end` is the state behind.
+
+    A path is left where it loses stability at a bifurcation, and ends only where it loses it.
+    """
+    lost = change.lost
+    leaves = lost and on_instability == "branch" and point.kind == "bifurcation"
+    if leaves:
+        point = _put_on_stop(point, end, change.second, stops)
+    return Decision(point, leaves, lost and on_instability == "stop")
+
+
+def _put_on_stop(
     point: CriticalPoint, end: Correction, linearisation: Linearisation, stops: Sequence[float]
 ) -> CriticalPoint:
     """The critical point at the state behind it, if that is a stop which is critical itself.

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from .cause import Cause
+
 Array = NDArray[np.float64]
 
 
@@ -38,7 +40,9 @@ class NewtonResult:
     """What a solve ended with.
 
     `iterations` counts the tangents that were factorised, which is what a solve costs;
-    `residuals` holds the norm of the scaled residual before each step and after the last.
+    `residuals` holds the norm of the scaled residual before each step of the last attempt and
+    after it.
+    `cause` is None where it converged.
     """
 
     x: Array
@@ -46,6 +50,7 @@ class NewtonResult:
     iterations: int
     reason: str
     residuals: tuple[float, ...]
+    cause: Cause | None = None
 
 
 #: PETSc's reasons in words.
@@ -59,3 +64,6 @@ REASONS = {
     -8: "the line search ended in a local minimum of the residual",
     -9: "the error does not fall any more",
 }
+
+#: Their causes; any other failure is a residual that does not fall.
+CAUSES = {-3: Cause.SINGULAR, -4: Cause.DIVERGED, -5: Cause.ITERATIONS}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cached_property
 
@@ -11,9 +12,12 @@ from mpi4py import MPI
 
 from ..stopwatch import Stopwatch
 from .bordered import BorderedNewton
+from .corrector import Corrector
+from .diagnosis import diagnose
 from .eigenvalue import LowestMode
 from .equilibrium import Array, Correction, Linearisation, Mode, Plane
 from .factorisation import Inertia
+from .failure import Diagnosis, Remedies
 from .metric import Metric
 from .newton import NewtonSolver
 from .newton_settings import NewtonSettings
@@ -33,7 +37,7 @@ class NewtonPath:
         problem: Problem,
         settings: NewtonSettings,
         clock: Stopwatch,
-        weights: Array | None = None,
+        weights: Callable[[], Array] | None = None,
         eigenvalues: bool = False,
     ) -> None:
         """Set up the solver.
@@ -43,8 +47,8 @@ class NewtonPath:
         problem, settings, clock
             What is solved, when iterations stop and where their time is counted.
         weights
-            Share of each owned unknown in the mean square of a displacement, 0 for what is no
-            displacement; the same for all by default.
+            Makes the share of each owned unknown in the mean square of a displacement, 0 for what
+            is no displacement, once it is needed; the same for all by default.
         eigenvalues
             Whether `linearise` finds the lowest mode at every state.
         """
@@ -64,16 +68,42 @@ class NewtonPath:
             replace(settings, near=_NEAR) if problem.extrapolates else settings,
             self._potential if problem.has_minima else None,
         )
+        self._corrector = Corrector(problem, self._newton, self._set_load)
 
-    def correct(self, guess: Array, load: float) -> Correction:
-        """Newton's method from the guess, with the held unknowns put in place."""
-        self._load = load
+    def correct(self, guess: Array, load: float, origin: Origin | None = None) -> Correction:
+        """Newton's method from the guess, with the held unknowns put in place.
+
+        The guess is from `origin`; by default from the state that was linearised last.
+        """
         with self._clock("solve"):
-            guess = self._problem.impose(guess, load)
-            result = self._newton.solve(guess, self._origin(load))
-        if result.converged and (reason := self._problem.objection(result.x, load)):
-            return Correction(load, result.x, False, result.iterations, reason)
-        return Correction(load, result.x, result.converged, result.iterations, result.reason)
+            return self._corrector.correct(guess, load, origin or self._origin(load))
+
+    def correct_exactly(self, guess: Array, load: float) -> Correction:
+        """As :meth:`correct`, with steps as long as makes the residual smallest."""
+        with self._clock("solve"):
+            return self._corrector.correct(guess, load, self._origin(load), exactly=True)
+
+    def correct_softly(self, guess: Array, load: float, level: int) -> Correction:
+        """As :meth:`correct`, by way of easier problems from that of a level down to this one."""
+        with self._clock("solve"):
+            return self._corrector.correct_softly(guess, load, self._origin(load), level)
+
+    @property
+    def softest(self) -> int:
+        """Level of the easiest problem for that; 0 is this one."""
+        return self._problem.softest
+
+    @property
+    def remedies(self) -> Remedies:
+        """What a user can change."""
+        return self._problem.remedies
+
+    def diagnose(self, last: Array, last_load: float, failed: Correction) -> Diagnosis:
+        """What can be told about a failed correction and the last accepted state."""
+        with self._clock("solve"):
+            return diagnose(
+                self._problem, self._newton, self._modes, self._set_load, (last, last_load), failed
+            )
 
     def correct_on_plane(self, plane: Plane) -> Correction:
         """Newton's method for the state and its load, from the point of the plane."""
@@ -87,6 +117,11 @@ class NewtonPath:
         large ones in places, gain more digits than the state had.
         """
         return self._linearise(x, load, self._eigenvalues)
+
+    def back_substitute(self, forces: Array) -> Array:
+        """Solve (tangent at the state linearised last) y = forces; SI units."""
+        with self._clock("solve"):
+            return self._newton.back_substitute(forces)
 
     def analyse(self, x: Array, load: float) -> Linearisation:
         """As :meth:`linearise`, with the lowest mode in any case."""
@@ -145,11 +180,12 @@ class NewtonPath:
 
     @property
     def _comm(self) -> MPI.Comm:
-        return self._matrix.comm.tompi4py()
+        return self._newton.comm
 
     @cached_property
     def _metric(self) -> Metric:
-        return Metric(self._problem, self._comm, self._weights)
+        weights = None if self._weights is None else self._weights()
+        return Metric(self._problem, self._comm, weights)
 
     @cached_property
     def _bordered(self) -> BorderedNewton:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from petsc4py import PETSc
 
+from .failure import Remedies
 from .origin import Origin
 
 Array = NDArray[np.float64]
@@ -65,3 +66,20 @@ class Problem(Protocol):
 
     def objection(self, x: Array, load: float) -> str:
         """Why an equilibrium is not acceptable all the same; empty where it is."""
+
+    @property
+    def softest(self) -> int:
+        """Level of the easiest problem that :meth:`soften` makes of this one; 0 if it makes none.
+
+        The problems of the levels lead to this one, which is level 0.
+        """
+
+    def soften(self, level: int) -> None:
+        """Be the problem of a level from now on."""
+
+    @property
+    def remedies(self) -> Remedies:
+        """What a user can change about the problem."""
+
+    def locate(self, unknown: int) -> str:
+        """What an owned unknown is and where, as "displacement at (0, 0.1) m"; not collective."""

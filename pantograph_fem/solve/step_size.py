@@ -69,9 +69,12 @@ class StepSize:
         self.value *= min(max(factor, s.cutback), s.growth)
         self.value = min(max(self.value, s.min_step), s.max_step)
 
-    def rejected(self, tried: float, smallest: float | None = None) -> bool:
-        """Cut back after a step of size `tried` failed; False when it was the smallest."""
-        if tried <= (smallest or self.settings.min_step) * (1 + _ROUNDING):
+    def rejected(self, tried: float, smallest: float = 0.0) -> bool:
+        """Cut back after a step of size `tried` failed; False when it was the smallest.
+
+        That is `smallest`, if it is larger than the smallest step of the settings.
+        """
+        if tried <= max(smallest, self.settings.min_step) * (1 + _ROUNDING):
             return False
         self.value = max(tried * self.settings.cutback, self.settings.min_step)
         return True

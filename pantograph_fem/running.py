@@ -13,6 +13,7 @@ from .case import SheetCase
 from .errors import CaseError, PathError
 from .parallel import at_root
 from .recorder import Recorder
+from .results.failure import write_failure
 from .results.history import HistoryRow
 from .results.progress import Progress
 from .results.summary import CRITICAL, DONE
@@ -74,7 +75,8 @@ def run(
         If the directory cannot be written to; if the mesh or a probe is wrong, which shows only
         here; if what is to be resumed belongs to another case.
     PathError
-        If the path could not be followed to the end. The results up to there are complete.
+        If the path could not be followed to the end. The results up to there are complete, and
+        ``failure.json`` tells more.
     """
     if comm is None:
         from mpi4py import MPI
@@ -95,6 +97,8 @@ def run(
                 stop = step.critical is not None and case.continuation.on_instability == "stop"
                 status = CRITICAL if stop else DONE
     except PathError as error:
+        found = error
+        at_root(comm, lambda: write_failure(directory, found))
         recorder.finish(f"stopped: {error}")
         raise
     recorder.finish(status)
