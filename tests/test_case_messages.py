@@ -138,7 +138,7 @@ def test_unknown_keys_say_what_is_allowed() -> None:
         'material.strech: unknown key; did you mean "stretch"? Allowed here: bending, shear, '
         "shear_exponent, stretch",
         "loads: unknown key; allowed here: continuation, discretisation, grips, kind, material, "
-        "mesh, name, output, sheet, title",
+        "measurements, mesh, name, output, sheet, title",
     ]
 
 

@@ -211,13 +211,14 @@ def test_values_have_the_digits_that_can_be_read_and_no_signed_zeros():
 
 
 def test_a_long_history_is_thinned_but_keeps_critical_and_last_states(tmp_path):
-    point = {"step": 501, "load": 501 / 2000, "kind": "limit point"}
-    results(tmp_path / "r", rows=2001, critical_points=[point])
+    load = float(np.linspace(0, 1, 901)[452])
+    point = {"step": 452, "load": load, "kind": "limit point"}
+    results(tmp_path / "r", rows=901, critical_points=[point])
     made = page(tmp_path / "r")
     _, rows = made.steps
     assert len(rows) <= MOST_ROWS + 2
-    assert {"501", "2000"} <= {row[0] for row in rows}
-    assert f"{len(rows)} of 2001 states" in made.text
+    assert {"452", "900"} <= {row[0] for row in rows}
+    assert f"{len(rows)} of 901 states" in made.text
 
 
 @pytest.mark.parametrize(

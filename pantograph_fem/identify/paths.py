@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from time import perf_counter
+from time import process_time
 
 import numpy as np
 from numpy.typing import NDArray
@@ -69,7 +69,7 @@ class Cost:
     tangents
         Tangents factorised for all of them, and for the first alone, which is from rest.
     seconds
-        Time for all of them, and for the first.
+        CPU time for all of them, and for the first.
     """
 
     paths: int = 0
@@ -132,7 +132,7 @@ class Paths:
         for path in self._kept:
             if np.array_equal(path.q, q):
                 return path
-        start, self._tangents = perf_counter(), 0
+        start, self._tangents = process_time(), 0
         self._responses.sensitivity.constants = values_of(self.parameters, q)
         try:
             path = self._nearby(q)
@@ -140,7 +140,7 @@ class Paths:
             self.cost.from_rest += 1
             path = self._from_rest(q)
         finally:
-            self._count(perf_counter() - start)
+            self._count(process_time() - start)
         self._kept = [*self._kept[-(_KEPT - 1) :], path]
         return path
 

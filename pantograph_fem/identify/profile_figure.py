@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MaxNLocator
+from scipy.interpolate import CubicSpline
 from scipy.stats import chi2
 
 from .estimates import Estimate
@@ -16,7 +17,7 @@ from .identify import Identification
 from .profile import Profile
 
 #: Highest rise of χ² that is shown.
-_HIGHEST = 12.0
+_HIGHEST = 8.0
 
 
 def draw_profiles(found: Identification, path: Path) -> None:
@@ -39,11 +40,12 @@ def draw_profiles(found: Identification, path: Path) -> None:
         axes.spines[["top", "right"]].set_visible(False)
     panels[0].set_ylabel("rise of χ²")
     panels[0].text(
-        0.02,
+        0.5,
         bound + 0.15,
         f"{100 * found.study.confidence:g} %",
         color="C3",
         fontsize="small",
+        ha="center",
         transform=panels[0].get_yaxis_transform(),
     )
     figure.suptitle(fill(found.study.title, 32 * number), fontsize="medium", parse_math=False)
@@ -55,9 +57,12 @@ def _draw(axes: Axes, estimate: Estimate, profile: Profile, best: float, least: 
     parameter = estimate.parameter
     places = np.linspace(profile.q[0], profile.q[-1], 101)
     axes.plot(places, ((places - best) / estimate.deviation) ** 2, "--", color="0.5", linewidth=1.0)
-    axes.plot(profile.q, profile.chi2 - least, "o-", color="C0", markersize=4, linewidth=1.2)
+    axes.plot(profile.q, profile.chi2 - least, "o", color="C0", markersize=4)
+    if len(profile.q) > 3:
+        spline = CubicSpline(profile.q, profile.chi2 - least)
+        axes.plot(places, spline(places), color="C0", linewidth=1.2)
     axes.axvline(best, color="0.8", linewidth=0.8, zorder=0)
-    axes.xaxis.set_major_locator(MaxNLocator(4))
+    axes.xaxis.set_major_locator(MaxNLocator(3))
     axes.xaxis.set_major_formatter(FuncFormatter(lambda q, _: f"{parameter.value(q):.3g}"))
     axes.set_xlabel(
         f"{parameter.symbol} ({parameter.unit})" if parameter.unit else parameter.symbol

@@ -30,7 +30,7 @@ def print_identification(found: Identification, console: Console | None = None) 
         console.print(Text(sentence))
     cost = found.cost
     console.print(
-        f"{cost.paths} equilibrium paths, {cost.from_rest} of them from rest, in the time of "
+        f"{cost.paths} equilibrium paths, {cost.from_rest} of them from rest, in the CPU time of "
         f"{cost.worth:.2g} from rest"
     )
 

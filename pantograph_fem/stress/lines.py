@@ -127,6 +127,18 @@ LINES = (
         ),
         (CriticalLoad(2 / 3, 1e-5, "bifurcation", "closed form"), Without("unstable states")),
     ),
+    HardCase(
+        "column_stiff_hinge_between",
+        "the same, critical load at no stop",
+        "beam_euler",
+        (
+            _pressed(1.518, 2.0, 1e6 * _K_E),
+            f"material.stretch={1e6 * _K_E!r}",
+            'discretisation.scheme="hinge"',
+            _BRANCH,
+        ),
+        (CriticalLoad(1 / 1.518, 1e-5, "bifurcation", "closed form"), Without("unstable states")),
+    ),
     _rolled(3),
     _rolled(10, "continuation.max_step=0.02", "mesh.size=0.0078125"),
     HardCase(

@@ -56,9 +56,7 @@ def _upright(scheme: str, *overrides: str, quick: bool = False) -> HardCase:
 
 
 LOADINGS = (
-    _farther(
-        "a_beyond_locking", "0.075 m, fibres stretch by tens of %", BIAS, pulled(0.075), _SHORT
-    ),
+    _farther("a_beyond_locking", "0.075 m, fibres stretch much", BIAS, pulled(0.075), _SHORT),
     HardCase(
         "a_beyond_locking_micromorphic",
         "the same, micromorphic scheme",

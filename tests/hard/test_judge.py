@@ -1,5 +1,6 @@
 """The judge of hard cases: it accepts a true history and refuses every doctored one."""
 
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 
 from pantograph_fem.case import load_case
 from pantograph_fem.errors import CaseError
+from pantograph_fem.results.progress import Progress
 from pantograph_fem.running import run
 from pantograph_fem.stress import run_suite, select
 from pantograph_fem.stress.evidence import read_evidence
@@ -60,6 +62,16 @@ def test_a_true_history_is_accepted(true):
     verdict = judge(HARD, true)
     assert verdict.failures == ()
     assert verdict.outcome == "done"
+
+
+def test_the_summary_counts_the_steps_that_were_rejected(true, tmp_path, monkeypatch):
+    assert true.summary["cutbacks"] == 0
+    seen = []
+    monkeypatch.setattr(Progress, "rejected", lambda *told: seen.append(told))
+    steps = ["continuation.stops=[1.0]", "continuation.max_step=1.0"]
+    steps += ["continuation.initial_step=1.0", "continuation.max_iterations=3"]
+    run(load_case(CASES / f"{HARD.base}.toml", [*OVERRIDES, *steps]), tmp_path, quiet=True)
+    assert json.loads((tmp_path / "summary.json").read_text())["cutbacks"] == len(seen) > 0
 
 
 def test_energy_is_the_work_of_both_turning_grips_to_one_per_mille(true):
