@@ -219,7 +219,7 @@ class Recorder:
             with self._clock("output"):
                 plot(self._directory)
             self._write_summary(status)
-        if self._case.output.writes_report:
+        if self._case.output.report:
             self._write_report()
 
     def _write_report(self) -> None:

@@ -4,6 +4,7 @@ import copy
 import itertools
 import json
 import os
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,13 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("OMPI_ALLOW_RUN_AS_ROOT", "1")
 os.environ.setdefault("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
+# Two processes also where there is one core, by Open MPI 4 and 5.
+os.environ.setdefault("OMPI_MCA_rmaps_base_oversubscribe", "1")
+os.environ.setdefault("PRTE_MCA_rmaps_default_mapping_policy", ":oversubscribe")
+
+#: Two processes of the MPI that the interpreter has: a wheel brings its own.
+_BESIDE = Path(sys.executable).with_name("mpiexec")
+MPIRUN = (str(_BESIDE) if _BESIDE.exists() else "mpirun", "-n", "2")
 
 #: Case a on a mesh that is too coarse to be accurate and fine enough to be exact mechanics.
 COARSE = {

@@ -17,7 +17,7 @@ from pantograph_fem.case import load_case
 from pantograph_fem.results.fields import read_fields
 from pantograph_fem.results.history import read_history
 
-from .conftest import COARSE, merged
+from .conftest import COARSE, MPIRUN, merged
 
 PANTOGRAPH = str(Path(sys.executable).with_name("pantograph"))
 CASES = Path(__file__).parents[1] / "cases"
@@ -274,9 +274,6 @@ def test_a_reader_that_goes_away_is_no_crash(tmp_path):
         errors = process.stderr.read()
     assert "PETSC ERROR" not in errors
     assert "Traceback" not in errors
-
-
-MPIRUN = ("mpirun", "--oversubscribe", "-n", "2")
 
 
 @pytest.fixture(scope="module")

@@ -18,6 +18,8 @@ from pantograph_fem.physics.rigid_motion import RigidMotion
 from pantograph_fem.solve.newton import NewtonSolver
 from pantograph_fem.solve.newton_settings import NewtonSettings
 
+from .conftest import MPIRUN
+
 K_E, K_B, LENGTH, COUNT = 4.05e8, 7.59e5, 1.0, 20
 SPACING = LENGTH / COUNT
 
@@ -212,7 +214,7 @@ print(f"rank {MPI.COMM_WORLD.rank} agrees on {x.size} of {whole.size}")
 @pytest.mark.slow
 def test_two_processes_compute_what_one_computes():
     done = subprocess.run(
-        ["mpirun", "--oversubscribe", "-n", "2", sys.executable, "-c", _TWO],
+        [*MPIRUN, sys.executable, "-c", _TWO],
         env=dict(os.environ),
         capture_output=True,
         text=True,

@@ -71,6 +71,7 @@ def test_a_run_leaves_the_files_of_the_interface_and_no_others(result):
         "fields.xdmf",
         "figures",
         "history.csv",
+        "report.html",
         "summary.json",
     ]
 
@@ -315,7 +316,14 @@ def test_a_new_run_in_the_same_directory_replaces_the_old_one(tmp_path):
     [
         (
             {"fields": "none"},
-            ["case.resolved.toml", "checkpoint.npz", "figures", "history.csv", "summary.json"],
+            [
+                "case.resolved.toml",
+                "checkpoint.npz",
+                "figures",
+                "history.csv",
+                "report.html",
+                "summary.json",
+            ],
         ),
         (
             {"fields": "none", "figures": False},

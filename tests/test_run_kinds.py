@@ -17,7 +17,7 @@ from pantograph_fem.results.fields import read_fields
 from pantograph_fem.results.history import header, read_history
 from pantograph_fem.running import run
 
-from .conftest import merged
+from .conftest import MPIRUN, merged
 
 COMMON = {"continuation": {"stops": [0.5, 1.0]}, "output": {"figures": False}}
 BEAM = merged(
@@ -176,7 +176,7 @@ def test_two_processes_find_the_same(tmp_path, kind):
     path = tmp_path / "case.toml"
     path.write_text(case_to_toml(case_from_dict(KINDS[kind])))
     command = [sys.executable, "-m", "pantograph_fem", "run", str(path), "--quiet"]
-    for name, launcher in (("1", []), ("2", ["mpirun", "--oversubscribe", "-n", "2"])):
+    for name, launcher in (("1", []), ("2", MPIRUN)):
         subprocess.run(
             [*launcher, *command, "--output", str(tmp_path / name)],
             # Without what Open MPI adds behind Python's back once a test has loaded it.

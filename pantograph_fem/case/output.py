@@ -43,13 +43,8 @@ class Output(Part):
     fields: Literal["all", "stops", "none"] = "all"
     eigenvalues: bool = False
     figures: bool = True
-    report: bool | None = None
+    report: bool = Field(default_factory=lambda known: known.get("figures", True))
     line_spacing: float = Field(default=0.0048, gt=0)
-
-    @property
-    def writes_report(self) -> bool:
-        """Whether a run ends with ``report.html``."""
-        return self.figures if self.report is None else self.report
 
     def check_probes(self, sheet: Sheet) -> None:
         """Raise when a probe lies outside the rectangle."""

@@ -16,6 +16,9 @@ def solver() -> Callable[..., RunResult]:
     # The fronts of the factorisation are small: threads cost more than they bring.
     for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
         os.environ.setdefault(threads, "1")
+    # A process that is not under mpirun needs no daemon of Open MPI; many at a time get in each
+    # other's way.
+    os.environ.setdefault("OMPI_MCA_ess_singleton_isolated", "1")
     # PETSc of a wheel finds the MPI that comes beside it once that is loaded.
     import mpi4py.MPI  # noqa: F401
     import petsc4py

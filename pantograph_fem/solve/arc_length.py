@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 
 from ..errors import PathError
 from .arc import Arc, Parabola, Point
-from .cause import Cause
 from .continuation import Rejected
 from .critical import CriticalPoint, JumpError
-from .ending import linearise_first, no_way_on
+from .ending import elsewhere, linearise_first, no_way_on
 from .equilibrium import Array, Correction, Linearisation, ModalEquilibrium
 from .instability import Change, OnInstability, critical_point, decide, leave
 from .origin import Origin
@@ -60,19 +58,20 @@ def follow_arc_length(
             raise PathError(_too_long(here.load, number))
         before = here
         end, new, point = _advance(arc, points, linearisation, size, on_rejected)
-        if point is not None:
+        if new.stable != linearisation.stable:
             change = Change(here.load, linearisation, end.load, new)
             decision = decide(point, change, end, on_instability, settings.stops)
-            point = decision.point
-            number += 1
-            yield critical_step(number, point, checkpoint, settings)
-            if decision.ends or size.finished(point.load):
-                return
-            if decision.leaves:
-                branch = leave(problem, point, size.next_stop(point.load), upwards=False)
-                end, new = branch.correction, branch.linearisation
-                before = PathPoint(point.load, point.x, point.linearisation.rate)
-                size.restart(arc.length(new.x - point.x, end.load - point.load))
+            if decision is not None:
+                point = decision.point
+                number += 1
+                yield critical_step(number, point, checkpoint, settings)
+                if decision.ends or size.finished(point.load):
+                    return
+                if decision.leaves:
+                    branch = leave(problem, point, size.next_stop(point.load), upwards=False)
+                    end, new = branch.correction, branch.linearisation
+                    before = PathPoint(point.load, point.x, point.linearisation.rate)
+                    size.restart(arc.length(new.x - point.x, end.load - point.load))
         linearisation = new
         points = (before, PathPoint(end.load, new.x, new.rate))
         number, iterations = number + 1, end.iterations
@@ -102,7 +101,7 @@ def _advance(
                 between = _between(arc, here, found)
                 return found, new, critical_point(arc.problem, change, between, length)
             except JumpError as error:
-                found = _elsewhere(found, str(error))
+                found = elsewhere(found, str(error))
         if on_rejected is not None:
             on_rejected(ahead.at(step).load, step, found.reason)
         if not size.rejected(step):
@@ -127,11 +126,7 @@ def _unless_far(arc: Arc, found: Correction, expected: Point, step: float) -> Co
     away = arc.length(found.x - expected.x, found.load - expected.load)
     if not found.converged or away <= _MISS * step:
         return found
-    return _elsewhere(found, "the state found is too far from where the path was heading")
-
-
-def _elsewhere(found: Correction, reason: str) -> Correction:
-    return replace(found, converged=False, reason=reason, cause=Cause.ELSEWHERE)
+    return elsewhere(found, "the state found is too far from where the path was heading")
 
 
 def _between(arc: Arc, here: PathPoint, end: Correction) -> Callable[[float], Correction]:

@@ -7,10 +7,9 @@ It knows the problem by :class:`Equilibrium` alone, and where critical points ar
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import suppress
 
-from .critical import JumpError
-from .ending import linearise_first, no_way_on
+from .critical import CriticalPoint, JumpError
+from .ending import elsewhere, linearise_first, no_way_on
 from .equilibrium import (
     Array,
     Correction,
@@ -78,18 +77,14 @@ def follow(
         yield accepted_step(checkpoint, linearisation, settings)
         if size.finished(here.load):
             return
-        correction, new = _advance(
-            problem, points, size, predictor, linearisation.stable, on_rejected, watch
+        correction, new, point = _advance(
+            problem, points, linearisation, size, predictor, on_rejected, watch
         )
         earlier = [here]
         if watch is not None and new.stable != linearisation.stable:
             change = Change(here.load, linearisation, correction.load, new)
-            between = _between(watch, predictor, points, correction)
-            point = None
-            with suppress(JumpError):  # it was as small a step as there is
-                point = critical_point(watch, change, between)
-            if point is not None:
-                decision = decide(point, change, correction, on_instability, settings.stops)
+            decision = decide(point, change, correction, on_instability, settings.stops)
+            if decision is not None:
                 point = decision.point
                 number += 1
                 yield critical_step(number, point, checkpoint, settings)
@@ -125,27 +120,37 @@ def _between(
 def _advance(
     problem: Equilibrium,
     points: tuple[PathPoint, ...],
+    before: Linearisation,
     size: StepSize,
     predictor: PredictorName,
-    stable: bool,
     on_rejected: Rejected | None,
     watch: ModalEquilibrium | None,
-) -> tuple[Correction, Linearisation]:
-    """The next state that is accepted, after as many cut-backs as it takes."""
+) -> tuple[Correction, Linearisation, CriticalPoint | None]:
+    """The next state that is accepted, and a critical point before it, after cut-backs."""
     last = points[-1].load
     while True:
         load = size.next_load(last)
-        correction = problem.correct(predict(predictor, points, load), load)
-        if correction.converged:
-            linearisation = problem.linearise(correction.x, load)
-            lost = stable and not linearisation.stable
-            if not (lost and size.rejected(load - last, size.settings.critical_step)):
-                return correction, linearisation
-        elif not size.rejected(load - last):
-            rescued = rescue(watch, predictor, points, load, stable) if watch else None
+        found = problem.correct(predict(predictor, points, load), load)
+        if found.converged:
+            new = problem.linearise(found.x, load)
+            if new.stable == before.stable:
+                return found, new, None
+            if before.stable and size.rejected(load - last, size.settings.critical_step):
+                if on_rejected is not None:
+                    on_rejected(load, load - last, "the state found is unstable")
+                continue
+            if watch is None:
+                return found, new, None
+            try:
+                change = Change(last, before, load, new)
+                between = _between(watch, predictor, points, found)
+                return found, new, critical_point(watch, change, between)
+            except JumpError as error:
+                found = elsewhere(found, str(error))
+        if not size.rejected(load - last):
+            rescued = rescue(watch, predictor, points, load, before.stable) if watch else None
             if rescued is None:
-                raise no_way_on(points, load - last, correction, watch)
-            return rescued
+                raise no_way_on(points, load - last, found, watch)
+            return *rescued, None
         if on_rejected is not None:
-            reason = "the state found is unstable" if correction.converged else correction.reason
-            on_rejected(load, load - last, reason)
+            on_rejected(load, load - last, found.reason)

@@ -86,3 +86,8 @@ def limit_load(problem: ModalEquilibrium, points: Sequence[PathPoint], step: flo
         return None
     ahead = last * (points[-1].load - points[-2].load) / (first - last)
     return points[-1].load + ahead if 0.0 <= ahead <= _WITHIN_STEPS * step else None
+
+
+def elsewhere(found: Correction, reason: str) -> Correction:
+    """A state that is none of the path that is followed, as a failure."""
+    return replace(found, converged=False, reason=reason, cause=Cause.ELSEWHERE)

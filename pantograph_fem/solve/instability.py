@@ -72,17 +72,32 @@ class Decision:
 
 
 def decide(
-    point: CriticalPoint,
+    point: CriticalPoint | None,
     change: Change,
     end: Correction,
     on_instability: OnInstability,
     stops: Sequence[float],
-) -> Decision:
+) -> Decision | None:
     """What the user wants at a critical point, of which `end` is the state behind.
 
     A path is left where it loses stability at a bifurcation, and ends only where it loses it.
+    None where the point could not be located, and nothing is wanted there.
+
+    Raises
+    ------
+    PathError
+        If the path is to end at a point that could not be located, or to be left there.
     """
     lost = change.lost
+    if point is None:
+        if not lost or on_instability == "follow":
+            return None
+        raise PathError(
+            f"The path loses stability between load factors {change.load:.9g} and "
+            f"{change.next_load:.9g}, and no mode was found there by which to locate the critical "
+            "point. Every state up to there is saved. Try a finer mesh, or "
+            'continuation.on_instability = "follow".'
+        )
     leaves = lost and on_instability == "branch" and point.kind == "bifurcation"
     if leaves:
         point = _put_on_stop(point, end, change.second, stops)

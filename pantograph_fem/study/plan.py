@@ -14,7 +14,7 @@ from .sizes import default_series, finer_than, parse_sizes, size_overrides, size
 from .variant import Placed, Variant
 
 #: Pictures and fields are no part of what a result costs.
-_NO_OUTPUT = ("output.figures=false", "output.fields=none")
+_NO_OUTPUT = ("output.figures=false", "output.report=false", "output.fields=none")
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ from .study_file import load_sweep
 from .vary import Value
 
 #: Pictures and fields of every point are much to write; ``set`` may ask for them.
-_NO_OUTPUT = ("output.figures=false", "output.fields=none")
+_NO_OUTPUT = ("output.figures=false", "output.report=false", "output.fields=none")
 
 
 @dataclass(frozen=True, eq=False)
