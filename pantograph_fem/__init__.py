@@ -24,7 +24,7 @@ if TYPE_CHECKING:
         case_to_toml,
         load_case,
     )
-    from .errors import CaseError, PantographError, PathError
+    from .errors import CaseError, PantographError, PathError, ResultsError
     from .results.result import Result
     from .results.states import State, States
 
@@ -39,6 +39,7 @@ __all__ = [
     "PantographError",
     "PathError",
     "Result",
+    "ResultsError",
     "SheetCase",
     "State",
     "States",
@@ -62,7 +63,7 @@ _HOMES = {
         "case_to_toml",
         "load_case",
     ),
-    ".errors": ("CaseError", "PantographError", "PathError"),
+    ".errors": ("CaseError", "PantographError", "PathError", "ResultsError"),
     ".results.result": ("Result",),
     ".results.states": ("State", "States"),
 }

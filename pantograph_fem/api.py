@@ -56,6 +56,8 @@ def run(
         its key, its value and what is allowed.
     PathError
         If the path could not be followed to its end. Its `result` holds what was found before.
+    ResultsError
+        If a file could not be written on the way, as on a full disk.
     """
     checked = _checked(case, set)
     from .commands.solver import solver  # only for a case that is right, as it takes seconds

@@ -81,7 +81,7 @@ def case_file(tmp_path: Path) -> Path:
         ("discretisation", "scheme", "argyris",
          '"argyris" is not allowed; it must be "micromorphic" or "hinge"'),
         ("discretisation", "degree", 7, "7 is not allowed; it must be 2, 3, 4, 5 or 6"),
-        ("discretisation", "auxiliary_degree", 0, "0 is not allowed; it must be from 1 to 4"),
+        ("discretisation", "auxiliary_degree", 0, "0 is not allowed; it must be from 1 to 5"),
         ("discretisation", "quadrature_degree", 21,
          "21 is not allowed; it must be from 2 to 20"),
         ("discretisation", "quadrature_degree", 4.0,

@@ -65,6 +65,7 @@ class LowestMode:
         solver.setInitialSpace(self._start())
         solver.solve()
         if solver.getConverged() < max(negative, 1):
+            solver.destroy()
             return None
         vector = self._operator.createVecLeft()
         # Of the negative ones, 1/μ nearest to zero is that of the lowest μ.

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from petsc4py import PETSc
 
 from ..errors import PathError
+from .memory import destroy_with
 
 #: MUMPS control: detect null pivots, so that the inertia also counts zero eigenvalues.
 _NULL_PIVOTS = 24
@@ -48,6 +49,7 @@ class Factorisation:
         pc.getFactorMatrix().setMumpsIcntl(_WORKSPACE, 50)
         self._ksp = ksp
         self._matrix = matrix
+        destroy_with(self, ksp)
 
     def update(self) -> None:
         """Factorise the matrix as it is now."""

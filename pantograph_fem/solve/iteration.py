@@ -56,7 +56,6 @@ class NewtonIteration:
         self._guess_origin: Origin | None = None
         self._origin: Origin | None = None  # of the present iterate
         self._iterate = np.empty(0)
-        self._solvers: dict[Search, PETSc.SNES] = {}
 
     def begin(self, origin: Origin | None) -> None:
         """Another solve begins, from a guess of that origin."""
@@ -73,13 +72,15 @@ class NewtonIteration:
         self._policy.begin()
         self._error.set(0.0)
         self._system.measure(guess, self._x)
-        snes = self._solver(search)
+        snes = self._solver(search)  # made anew: it and this object would keep each other alive
         try:
             snes.solve(None, self._x)
             code = snes.getConvergedReason()
             reason = REASONS.get(code, f"PETSc's SNES stopped with reason {code}")
         except (PETSc.Error, SingularTangentError) as error:  # out of memory, for one
             code, reason = -3, f"the tangent could not be factorised ({error})"
+        finally:
+            snes.destroy()
         if code > 0:
             self._x.axpy(-1.0, self._error)
         self._factorised = code > 0  # the factor of a failed iterate estimates nothing
@@ -107,18 +108,16 @@ class NewtonIteration:
         self._step_at_hand = False
 
     def _solver(self, search: Search) -> PETSc.SNES:
-        if search not in self._solvers:
-            self._solvers[search] = newton_snes(
-                self._system.matrix,
-                self,
-                self._fill_residual,
-                self._fill_tangent,
-                self._test_convergence,
-                self._settings.max_iterations,
-                line_search="l2" if search == "smallest residual" else "bt",
-                objective=self._evaluate_potential if search == "potential" else None,
-            )
-        return self._solvers[search]
+        return newton_snes(
+            self._system.matrix,
+            self,
+            self._fill_residual,
+            self._fill_tangent,
+            self._test_convergence,
+            self._settings.max_iterations,
+            line_search="l2" if search == "smallest residual" else "bt",
+            objective=self._evaluate_potential if search == "potential" else None,
+        )
 
     def _fill_residual(self, _: PETSc.SNES, x: PETSc.Vec, r: PETSc.Vec) -> None:
         self._system.residual(x, r)

@@ -18,6 +18,7 @@ from .eigenvalue import LowestMode
 from .equilibrium import Array, Correction, Linearisation, Mode, Plane
 from .factorisation import Inertia
 from .failure import Diagnosis, Remedies
+from .memory import clean_up, destroy_with
 from .metric import Metric
 from .newton import NewtonSolver
 from .newton_settings import NewtonSettings
@@ -59,6 +60,7 @@ class NewtonPath:
         self._load = 0.0
         self._trusted: tuple[float, Array, Array] | None = None
         self._matrix = problem.matrix()
+        destroy_with(self, self._matrix)
         self._newton = NewtonSolver(
             lambda x, r: problem.residual(x, self._load, r),
             lambda x, A, origin: problem.tangent(x, self._load, A, origin),
@@ -139,6 +141,7 @@ class NewtonPath:
             force = self._problem.load_rate(x, load)
             rate = self._newton.back_substitute(force)
             mode = self._lowest(inertia, force, rate) if modal else None
+        clean_up(self._matrix)
         self._trusted = (load, x, rate)
         return Linearisation(
             x=x,
