@@ -3,7 +3,7 @@
 # make lint   style and types alone
 # make hard   runs the hard cases and puts their table into docs/hard_cases.md, in ten minutes
 # make docs   builds the reference of the Python interface into build/docs
-# make figures   draws the figures of README and docs anew, in half an hour
+# make figures   draws the figures of README and docs anew, in two hours
 
 SHELL := /bin/bash
 .DELETE_ON_ERROR:
@@ -44,6 +44,26 @@ figures: .venv/installed
 		--mesh 0.0062/0.000155 --mesh 0.0044/0.00011
 	cp results/study_a_bias_extension/work_precision.png \
 		docs/figures/a_bias_extension_work_precision.png
+	.venv/bin/pantograph study cases/a_bias_extension.toml --quiet --scheme micromorphic \
+		--scheme hinge --degree 4 --degree 5 --set mesh.growth=0.5 --mesh 0.034/0.0025 \
+		--mesh 0.025/0.001 --mesh 0.025/0.0005 --output results/study_high_degrees
+	cp results/study_high_degrees/work_precision.png \
+		docs/figures/a_bias_extension_high_degrees.png
+	.venv/bin/pantograph study cases/c_rotation_45.toml --quiet --scheme micromorphic \
+		--scheme hinge --degree 3 --degree 4
+	cp results/study_c_rotation_45/work_precision.png docs/figures/c_rotation_45_work_precision.png
+	.venv/bin/pantograph study cases/beam_arc.toml --quiet --scheme micromorphic --scheme hinge \
+		--degree 2 --degree 3 --degree 4
+	cp results/study_beam_arc/work_precision.png docs/figures/beam_arc_work_precision.png
+	for study in grid constants; do \
+		.venv/bin/pantograph sweep studies/sweep_$$study.toml --quiet || exit; done
+	cp results/sweep_grid/sweep.png docs/figures/sweep_grid.png
+	cp results/sweep_constants/indices.png docs/figures/sweep_constants_indices.png
+	for study in bias force_alone; do \
+		.venv/bin/pantograph identify studies/identify_$$study.toml --quiet || exit; done
+	for figure in fit residuals states profile; do \
+		cp results/identify_bias/$$figure.png docs/figures/identify_bias_$$figure.png; done
+	cp results/identify_force_alone/fit.png docs/figures/identify_force_alone_fit.png
 	cd results && cp a_bias_extension/figures/{shear_angle_100,energy_density_100,force_displacement}.png \
 		../docs/figures
 	cp results/beam_arc/figures/shapes.png docs/figures/beam_arc_shapes.png

@@ -199,7 +199,7 @@ def cell_dofs(space: fem.FunctionSpace) -> NDArray[np.int32]:
 
 def cell_vertices(domain: mesh.Mesh) -> NDArray[np.int32]:
     """Geometry nodes of each local cell, shape (cells, vertices)."""
-    return _rows(domain.geometry.dofmap)
+    return _rows(domain.geometry.dofmaps[0] if _NEW else domain.geometry.dofmap)
 
 
 def _rows(cell_nodes: Any) -> NDArray[np.int32]:

@@ -165,7 +165,15 @@ def test_set_without_anything_to_run_is_refused(folder):
     assert message.startswith("--set mesh.size=0.01: nothing is run here")
 
 
-@pytest.mark.parametrize("path", sorted(STUDIES.glob("*.toml")), ids=lambda path: path.stem)
+#: Studies of `compare`; those of `identify` and `sweep` are named after their commands.
+SHIPPED = [
+    path
+    for path in sorted(STUDIES.glob("*.toml"))
+    if not path.stem.startswith(("identify_", "sweep_"))
+]
+
+
+@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
 def test_every_shipped_study_is_valid(path):
     plan = make_plan([path], None, ())
     assert plan.directory == Path("results", path.stem)

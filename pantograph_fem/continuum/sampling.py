@@ -110,10 +110,10 @@ def _straight_cells(nodes: Array) -> NDArray[np.int64]:
         along = np.argsort(nodes[:, 0])
         return np.column_stack([along[:-1], along[1:]])
     # On the equilateral triangle, where the lattice of nodes has one triangulation.
-    corners = np.array([[1.0, 0.0], [0.5, np.sqrt(0.75)]])
-    triangles = Delaunay(nodes @ corners).simplices
-    a, b, c = (nodes[triangles[:, i]] for i in range(3))
-    area = np.abs(np.cross(b - a, c - a))
+    equilateral = np.array([[1.0, 0.0], [0.5, np.sqrt(0.75)]])
+    triangles = Delaunay(nodes @ equilateral).simplices
+    corners = nodes[triangles]
+    area = np.abs(np.linalg.det(corners[:, 1:] - corners[:, :1]))
     return triangles[area > _FLAT * area.max()].astype(np.int64)
 
 
