@@ -19,6 +19,8 @@ SHORT = {
 #: A case of each kind, by the numbers in it and by others in all places.
 SHEET = merged(COARSE, SHORT) | {
     "sheet": {"width": 0.068, "height": 0.204, "fibre_angle": 45.0},
+    # So few elements bear no more: their fibres would cross.
+    "grips": {"top": {"translation": [0.0, 0.01]}},
     "mesh": {"size": 0.05, "corner_size": 0.05},
     "discretisation": {"degree": 2, "shear_regularisation": 1e-3},
 }
@@ -31,8 +33,8 @@ OTHER_SHEET = {
         "shear_exponent": 1.5,
     },
     "grips": {
-        "bottom": {"translation": [0.0, -0.01]},
-        "top": {"translation": [0.01, 0.02], "pivot": [0.01, 0.02]},
+        "bottom": {"translation": [0.0, -0.004]},
+        "top": {"translation": [0.004, 0.008], "pivot": [0.01, 0.02]},
     },
     "mesh": {"size": 0.04, "corner_size": 0.03},
     "discretisation": {"shear_regularisation": 2e-3},
