@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import subprocess
-import sys
 import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -107,7 +106,7 @@ def _overrides(options: Sequence[str], sizes: Sizes) -> list[str]:
 def _pantograph(options: Sequence[str], sizes: Sizes, folder: Path) -> Run:
     ended = run_in_process(load_case(CASE, _overrides(options, sizes)), folder)
     if ended.code:
-        raise RuntimeError(f"{sys.executable} -m pantograph_fem: {ended.message}")
+        raise RuntimeError(f"pantograph_fem ended with code {ended.code}: {ended.message}")
     summary: dict[str, Any] = json.loads((folder / "summary.json").read_text())
     history = np.genfromtxt(folder / "history.csv", delimiter=",", names=True)
     last = summary["last"]
