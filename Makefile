@@ -37,6 +37,8 @@ docs: .venv/installed
 figures: .venv/installed
 	.venv/bin/pantograph run cases/a_bias_extension.toml --quiet
 	.venv/bin/pantograph run cases/beam_arc.toml --quiet
+	.venv/bin/pantograph run cases/lattice_bias_extension.toml --quiet
+	$(PYTHON) docs/paraview.py
 	for study in chain_to_beam lattice_to_sheet lattice_to_sheet_resolved inextensible_limit; do \
 		.venv/bin/pantograph compare studies/$$study.toml --quiet || exit; done
 	.venv/bin/pantograph study cases/a_bias_extension.toml --quiet --scheme micromorphic \

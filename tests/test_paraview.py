@@ -13,7 +13,8 @@ import pyvista
 from pyvista import CellType
 
 from pantograph_fem.case import case_from_dict
-from pantograph_fem.results.fields import read_fields
+from pantograph_fem.results.fields import FieldGrid, read_fields
+from pantograph_fem.results.fields_writer import FieldsWriter
 from pantograph_fem.results.history import read_history
 from pantograph_fem.running import run
 
@@ -152,3 +153,14 @@ def test_the_mode_is_there_where_stability_is_lost(directories: dict[str, Path],
     across = np.abs(mesh["mode"][:, 1])
     assert across.argmax() == mesh.points[:, 0].argmax()
     assert across.max() == pytest.approx(1.0)
+
+
+def test_states_at_the_same_load_are_both_there(tmp_path: Path) -> None:
+    """Of equal times the reader would show none: they differ next to nothing."""
+    points, triangle = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]), np.array([[0, 1, 2]])
+    writer = FieldsWriter(tmp_path, FieldGrid(points, triangle))
+    for load, value in ((0.0, 1.0), (2 / 3, 2.0), (2 / 3, 3.0), (1.0, 4.0)):
+        writer.write(load, {"value": np.full(3, value)})
+    found = [(time, mesh["value"][0]) for time, mesh in states(tmp_path)]
+    assert [value for _, value in found] == [1.0, 2.0, 3.0, 4.0]
+    assert found[2][0] == pytest.approx(2 / 3, rel=1e-11)

@@ -1,4 +1,7 @@
-"""What a command knows of mpirun before MPI is imported: Open MPI's environment, or MPICH's."""
+"""What a command knows of other processes before MPI is imported, from the environment.
+
+Open MPI's mpirun, MPICH's, and Slurm's srun leave it there.
+"""
 
 from __future__ import annotations
 
@@ -7,9 +10,13 @@ import os
 
 def rank() -> int:
     """Rank of this process."""
-    return int(os.environ.get("OMPI_COMM_WORLD_RANK") or os.environ.get("PMI_RANK") or 0)
+    names = ("OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK")
+    return int(next((os.environ[name] for name in names if os.environ.get(name)), 0))
 
 
 def processes() -> int:
     """Number of processes."""
-    return int(os.environ.get("OMPI_COMM_WORLD_SIZE") or os.environ.get("PMI_SIZE") or 1)
+    names = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE"]
+    if "PMIX_RANK" in os.environ:  # else it is of a script that srun has not started in parallel
+        names.append("SLURM_NTASKS")
+    return int(next((os.environ[name] for name in names if os.environ.get(name)), 1))
