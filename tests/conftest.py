@@ -10,6 +10,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import HealthCheck, settings
+
+# How long a test takes says nothing of the program.
+settings.register_profile("untimed", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("untimed")
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -19,6 +24,9 @@ os.environ.setdefault("OMPI_MCA_ess_singleton_isolated", "1")
 # Two processes also where there is one core, by Open MPI 4 and 5.
 os.environ.setdefault("OMPI_MCA_rmaps_base_oversubscribe", "1")
 os.environ.setdefault("PRTE_MCA_rmaps_default_mapping_policy", ":oversubscribe")
+
+# PETSc of a wheel finds the MPI that comes beside it once that is loaded.
+import mpi4py.MPI  # noqa: F401
 
 #: Two processes of the MPI that the interpreter has: a wheel brings its own.
 _BESIDE = Path(sys.executable).with_name("mpiexec")
