@@ -26,7 +26,7 @@ os.environ.setdefault("OMPI_MCA_rmaps_base_oversubscribe", "1")
 os.environ.setdefault("PRTE_MCA_rmaps_default_mapping_policy", ":oversubscribe")
 
 # PETSc of a wheel finds the MPI that comes beside it once that is loaded.
-import mpi4py.MPI  # noqa: F401
+import mpi4py.MPI  # noqa: E402, F401
 
 #: Two processes of the MPI that the interpreter has: a wheel brings its own.
 _BESIDE = Path(sys.executable).with_name("mpiexec")
