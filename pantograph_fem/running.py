@@ -20,7 +20,7 @@ from .results.summary import CRITICAL, DONE
 from .simulation import Simulation, build_simulation
 from .solve.arc_length import follow_arc_length
 from .solve.continuation import Checkpoint, Step, follow, start_at
-from .solve.step_size import StepSettings
+from .stepping import step_settings
 from .stopwatch import Stopwatch
 
 if TYPE_CHECKING:
@@ -114,7 +114,7 @@ def _steps(
         return follow_arc_length(
             path,
             start,
-            _step_settings(case),
+            step_settings(case),
             simulation.start,
             options.max_steps,
             recorder.rejected,
@@ -123,7 +123,7 @@ def _steps(
     return follow(
         path,
         start,
-        _step_settings(case),
+        step_settings(case),
         options.predictor,
         recorder.rejected,
         path,
@@ -142,7 +142,7 @@ def _simulation(
     if resumed:
         return resumed_sheet(case, comm, clock, directory)
     lines = Progress(quiet=quiet or comm.rank != 0, plain=True)
-    return adapted_sheet(case, comm, clock, _step_settings(case), directory, lines.note)
+    return adapted_sheet(case, comm, clock, step_settings(case), directory, lines.note)
 
 
 def _check_folder(directory: Path) -> None:
@@ -155,17 +155,3 @@ def _check_folder(directory: Path) -> None:
             f"--output: {directory} cannot hold results, because {existing} {what}; "
             "give a folder that can be made or written to"
         )
-
-
-def _step_settings(case: Case) -> StepSettings:
-    options = case.continuation
-    return StepSettings(
-        stops=tuple(options.stops),
-        initial_step=options.initial_step,
-        min_step=options.min_step,
-        max_step=options.max_step,
-        growth=options.growth,
-        cutback=options.cutback,
-        target_iterations=options.target_iterations,
-        critical_step=options.critical_step,
-    )

@@ -17,7 +17,7 @@ from ..sheet.simulation import SheetSimulation
 from ..solve.continuation import follow, start_at
 from ..solve.equilibrium import Linearisation
 from ..solve.origin import Origin
-from ..solve.step_size import StepSettings
+from ..stepping import step_settings
 from ..stopwatch import Stopwatch
 from .parameters import Parameter, slopes_of, values_of
 from .responses import Response, Responses
@@ -103,17 +103,12 @@ class Paths:
         self.cost = Cost()
         self.simulation = SheetSimulation(case, MPI.COMM_WORLD, Stopwatch())
         self._responses = Responses(self.simulation, [p.name for p in parameters])
-        options = case.continuation
-        self._predictor = options.predictor
-        self._settings = StepSettings(
+        self._predictor = case.continuation.predictor
+        settings = step_settings(case)
+        self._settings = replace(
+            settings,
             stops=self.loads,
-            initial_step=min(options.initial_step, self.loads[-1]),
-            min_step=options.min_step,
-            max_step=options.max_step,
-            growth=options.growth,
-            cutback=options.cutback,
-            target_iterations=options.target_iterations,
-            critical_step=options.critical_step,
+            initial_step=min(settings.initial_step, self.loads[-1]),
         )
         self._kept: list[EquilibriumPath] = []
         self._tangents = 0

@@ -47,16 +47,7 @@ def run_in_process(case: Case, directory: Path) -> Ended:
     CaseError
         If the folder cannot be written to.
     """
-    case_file = directory / "case.toml"
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-        replace_text(case_file, case_to_toml(case))
-    except OSError as error:
-        raise CaseError(
-            f"--output: {directory} cannot hold results: {error.strerror}; give another folder"
-        ) from None
-    command = [sys.executable, "-m", "pantograph_fem", "run", str(case_file)]
-    command += ["--output", str(directory), "--quiet"]
+    command = command_of(case, directory)
     with tempfile.TemporaryFile() as errors:
         process = subprocess.Popen(
             command,
@@ -76,3 +67,23 @@ def run_in_process(case: Case, directory: Path) -> Ended:
         errors.seek(0)
         message = errors.read().decode(errors="replace").strip()
     return Ended(process.returncode, usage.ru_utime + usage.ru_stime, message)
+
+
+def command_of(case: Case, directory: Path) -> list[str]:
+    """The command that runs a case, which is left as ``case.toml`` beside the results.
+
+    Raises
+    ------
+    CaseError
+        If the folder cannot be written to.
+    """
+    case_file = directory / "case.toml"
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+        replace_text(case_file, case_to_toml(case))
+    except OSError as error:
+        raise CaseError(
+            f"--output: {directory} cannot hold results: {error.strerror}; give another folder"
+        ) from None
+    program = [sys.executable, "-m", "pantograph_fem", "run", str(case_file)]
+    return [*program, "--output", str(directory), "--quiet"]

@@ -5,17 +5,14 @@ from __future__ import annotations
 import os
 import signal
 import subprocess
-import sys
 import tempfile
 import threading
 from pathlib import Path
 from types import FrameType, TracebackType
 from typing import Any
 
-from ..case import Case, case_to_toml
-from ..errors import CaseError
-from ..results.atomic import replace_text
-from ..study.process import Ended
+from ..case import Case
+from ..study.process import Ended, command_of
 
 #: Signals that end a sweep as Ctrl-C does: from a scheduler, or from a terminal that is closed.
 _ENDING = (signal.SIGTERM, signal.SIGHUP)
@@ -64,16 +61,7 @@ class Processes:
         CaseError
             If the folder cannot be written to.
         """
-        case_file = directory / "case.toml"
-        try:
-            directory.mkdir(parents=True, exist_ok=True)
-            replace_text(case_file, case_to_toml(case))
-        except OSError as error:
-            raise CaseError(
-                f"--output: {directory} cannot hold results: {error.strerror}; give another folder"
-            ) from None
-        command = [sys.executable, "-m", "pantograph_fem", "run", str(case_file)]
-        command += ["--output", str(directory), "--quiet"]
+        command = command_of(case, directory)
         # each core has a process: threads would only compete
         env = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
         with tempfile.TemporaryFile() as errors:

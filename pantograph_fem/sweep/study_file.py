@@ -7,7 +7,7 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from ..case.messages import case_error, explain
-from ..case.problem import not_allowed, value_text
+from ..case.tables import tables_of
 from ..compare.study_file import read_toml
 from .study import SweepStudy
 from .vary import Vary
@@ -23,8 +23,7 @@ def load_sweep(path: Path) -> SweepStudy:
     """
     tables = {"title": path.stem, **read_toml(path), "name": path.stem}
     problems: list[str] = []
-    # Item by item, as the keys that are allowed are those of the item and not of the sweep.
-    vary = _vary(tables.pop("vary", None), problems)
+    vary = tables_of(tables.pop("vary", None), "vary", Vary, problems)
     if problems:
         # the keys of the file itself, judged without the rules that join them to those varied
         try:
@@ -36,23 +35,3 @@ def load_sweep(path: Path) -> SweepStudy:
         return SweepStudy.model_validate({**tables, "vary": vary})
     except ValidationError as error:
         raise case_error(str(path), explain(error, SweepStudy)) from None
-
-
-def _vary(value: object, problems: list[str]) -> tuple[Vary, ...]:
-    """Validate each table ``[[vary]]``; what is wrong is added to the problems."""
-    if not isinstance(value, list) or not value:
-        shown = "missing" if value is None else f"{value_text(value)} is not allowed"
-        problems.append(f"vary: {shown}; it must be at least one table [[vary]]")
-        return ()
-    items = []
-    for i, table in enumerate(value):
-        if not isinstance(table, dict):
-            rule = f"be a table with the keys {', '.join(sorted(Vary.model_fields))}"
-            problems.append(f"vary[{i}]: {not_allowed(table, rule)}")
-            continue
-        try:
-            items.append(Vary.model_validate(table))
-        except ValidationError as error:
-            lines = explain(error, Vary)
-            problems += [f"vary[{i}]{'' if line[:1] == ':' else '.'}{line}" for line in lines]
-    return tuple(items)
