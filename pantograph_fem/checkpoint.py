@@ -29,11 +29,22 @@ _FREE = {"title", "continuation", "output"}
 
 @dataclass(frozen=True)
 class Saved:
-    """A checkpoint, and how many rows and states the results held before its state was added."""
+    """A checkpoint, and what the results held before its state was added.
+
+    Attributes
+    ----------
+    checkpoint
+        From which the path goes on.
+    rows, states
+        Number of rows and states.
+    critical_points
+        As in ``summary.json``; those that rank 0 gives are saved.
+    """
 
     checkpoint: Checkpoint
     rows: int
     states: int
+    critical_points: tuple[dict[str, Any], ...] = ()
 
 
 def fingerprint(case: Case) -> str:
@@ -56,6 +67,7 @@ def save(directory: Path, comm: MPI.Comm, case_fingerprint: str, saved: Saved) -
             "ranks": comm.size,
             "counts": [checkpoint.number, checkpoint.iterations, saved.rows, saved.states],
             "step_size": checkpoint.step_size,
+            "critical_points": json.dumps(saved.critical_points),
         }
         for rank, points in enumerate(parts or []):
             for i, (load, x, rate) in enumerate(points):
@@ -96,6 +108,9 @@ def load(directory: Path, comm: MPI.Comm, case: Case) -> Saved | None:
                     f"by {comm.size}; use the same number, or start anew without --resume"
                 )
             number, iterations, rows, states = (int(n) for n in file["counts"])
+            # without them in files of earlier versions
+            known = str(file["critical_points"]) if "critical_points" in file.files else "[]"
+            critical_points = tuple(json.loads(known))
             count = sum(name.startswith("load_") for name in file.files)
             return [
                 Saved(
@@ -110,6 +125,7 @@ def load(directory: Path, comm: MPI.Comm, case: Case) -> Saved | None:
                     ),
                     rows,
                     states,
+                    critical_points,
                 )
                 for rank in range(comm.size)
             ]

@@ -70,7 +70,7 @@ class Recorder:
             plain=comm.size > 1,
         )
         self._accuracy = accuracy
-        self._critical: list[dict[str, object]] = []
+        self._critical = list(resumed.critical_points) if resumed else []
         self._cutbacks = 0
         self._history: HistoryWriter | None = None
         self._fields: FieldsWriter | None = None
@@ -110,7 +110,8 @@ class Recorder:
             marked = step.is_stop or step.critical is not None
             keep = wanted == "all" or (wanted == "stops" and marked)
             mode = self._mode(step) if keep else None
-            before = Saved(step.checkpoint, self._kept_rows + len(self.rows), self._states)
+            rows = self._kept_rows + len(self.rows)
+            before = Saved(step.checkpoint, rows, self._states, tuple(self._critical))
 
             def write() -> None:
                 assert observation is not None
@@ -151,11 +152,11 @@ class Recorder:
             ) from error
 
     def _mode(self, step: Step) -> dict[str, Array] | None:
-        """The lowest mode, if it is known, with the largest displacement of one."""
-        lowest = step.linearisation.lowest
-        if lowest is None:
+        """The critical mode, or the lowest if it is known, with the largest displacement of one."""
+        found = step.linearisation.lowest if step.critical is None else step.critical.mode
+        if found is None:
             return None
-        mode = self._simulation.displacement(lowest.shape, step.load)
+        mode = self._simulation.displacement(found.shape, step.load)
         return None if mode is None else {"mode": mode / np.hypot(*mode.T).max()}
 
     def _with_eigenvalue(self, row: HistoryRow, step: Step) -> HistoryRow:
@@ -168,8 +169,12 @@ class Recorder:
     def _note_critical(self, step: Step) -> None:
         if step.critical is None:
             return
-        self._critical.append({"step": step.number, "load": step.load, "kind": step.critical.kind})
-        self._progress.note(f"critical load {step.load:.7f}: {step.critical.kind}")
+        kind, modes = step.critical.kind, step.critical.modes
+        self._critical.append(
+            {"step": step.number, "load": step.load, "kind": kind, "modes": modes}
+        )
+        several = f", {modes} modes at once" if modes > 1 else ""
+        self._progress.note(f"critical load {step.load:.7f}: {kind}{several}")
 
     def _open(self, grid: FieldGrid | None) -> None:
         try:
@@ -214,9 +219,9 @@ class Recorder:
         # Before the figures too: a run is not lost because drawing it failed.
         self._write_summary(status)
         if self._case.output.figures:
-            from .plot import plot
-
             with self._clock("output"):
+                from .plot import plot
+
                 plot(self._directory)
             self._write_summary(status)
         if self._case.output.report:

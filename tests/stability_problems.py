@@ -101,6 +101,31 @@ def constrained_pitchfork(quartic=4.0):
     return toy, np.array([0.5, 0.5, 0.0, 0.0])
 
 
+def stiffnesses(of_x, rates, pull=None, pull_rate=None, size=1):
+    """t = p(x), and kᵢ(x) yᵢ + 4 yᵢ³ = 0: along y = 0 the eigenvalues are p'(x) and kᵢ(x).
+
+    `of_x` and `rates` give k and dk/dx, arrays of `size`; p is x by default. The potential is
+    that of kᵢ yᵢ²/2 but for what k' adds to the first equation, which is zero on the path.
+    """
+    pull, pull_rate = pull or (lambda x: x), pull_rate or (lambda x: 1.0)
+
+    def gradient(z, t):
+        return [pull(z[0]) - t, *(of_x(z[0]) * z[1:] + 4 * z[1:] ** 3)]
+
+    def hessian(z, t):
+        corner = np.array([[pull_rate(z[0])]])
+        inner = np.diag(of_x(z[0]) + 12 * z[1:] ** 2)
+        return np.block([[corner, np.zeros((1, size))], [(rates(z[0]) * z[1:])[:, None], inner]])
+
+    return Toy(size + 1, gradient, hessian, lambda z, t: [1.0, *np.zeros(size)])
+
+
+def falling(*loads):
+    """Stiffnesses cᵢ - x: mode i is lost at the load cᵢ."""
+    c = np.array(loads)
+    return stiffnesses(lambda x: c - x, lambda x: -np.ones(len(c)), size=len(c))
+
+
 class Truss:
     """Von Mises' truss: two bars from (±1, 0) to an apex at (0, h), each of stiffness k = 1.
 

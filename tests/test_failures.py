@@ -1,14 +1,18 @@
 """Where a path ends: what is refused, what is tried before, and what is said about it."""
 
+import ast
 import collections
 import json
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from mpi4py import MPI
 
+import pantograph_fem.solve
+from pantograph_fem.case import case_from_dict
 from pantograph_fem.errors import PathError
 from pantograph_fem.results.strict_json import to_json
 from pantograph_fem.running import run
@@ -16,12 +20,13 @@ from pantograph_fem.solve.advice import advise
 from pantograph_fem.solve.arc_length import follow_arc_length
 from pantograph_fem.solve.cause import Cause
 from pantograph_fem.solve.continuation import Correction, Linearisation, follow, start_at
+from pantograph_fem.solve.factorisation import SingularTangentError
 from pantograph_fem.solve.failure import Diagnosis, FailureReport, Remedies
 from pantograph_fem.solve.ladder import rescue
 from pantograph_fem.solve.predictor import PathPoint
 from pantograph_fem.solve.step_size import StepSettings, StepSize
 
-from .stability_problems import Toy, Truss
+from .stability_problems import Toy, Truss, falling, pitchfork
 
 REMEDIES = Remedies("a finer mesh (a smaller mesh.corner_size)", ("material.shear",))
 
@@ -48,10 +53,14 @@ def reported(**known):
         ({"cause": Cause.STALLED, "step": 0.1}, "min_step"),
         ({"cause": Cause.OBJECTION, "step": 0.1}, "a motion that ends before that load"),
         ({"cause": Cause.STALLED}, "mesh.corner_size"),
+        ({"cause": Cause.STEPS}, "max_steps"),
+        # a critical state may have a zero pivot, for which there is no other advice
+        ({"cause": Cause.NO_BRANCH, "diagnosis": Diagnosis(zero_pivots=1)}, "on_instability"),
+        ({"cause": Cause.NO_MODE, "diagnosis": Diagnosis(zero_pivots=1)}, "mesh.corner_size"),
     ],
 )
 def test_each_cause_has_its_own_advice(known, advice):
-    every = {"arc_length", "material.shear", "max_iterations", "min_step", "motion"}
+    every = {"arc_length", "material.shear", "max_iterations", "min_step", "motion", "max_steps"}
     given = advise(reported(**known), REMEDIES)
     assert advice in given
     assert not [other for other in every if other in given and other not in advice]
@@ -81,8 +90,11 @@ def end_of(steps):
     found = []
     with pytest.raises(PathError) as caught:
         collections.deque(map(found.append, steps))
-    assert caught.value.report.message == str(caught.value)
-    return found, caught.value.report
+    report = caught.value.report
+    assert report.message == str(caught.value)
+    assert str(caught.value).endswith(f"Try {report.advice}.")
+    assert report.reason
+    return found, report
 
 
 def test_a_load_that_turns_back_is_predicted_from_the_rates_before_it():
@@ -111,6 +123,124 @@ def test_a_path_along_its_arc_is_not_told_to_be_one():
     assert report.cause is Cause.OBJECTION
     assert report.turns_back_at is None
     assert "arc_length" not in report.advice
+
+
+def followed(path, arc=False, size=2, on_instability="follow", max_steps=400, **settings):
+    start, settings = start_at(np.zeros(size)), StepSettings(**settings)
+    if not arc:
+        return follow(path, start, settings, watch=path, on_instability=on_instability)
+    return follow_arc_length(
+        path, start, settings, np.zeros(size), max_steps, on_instability=on_instability
+    )
+
+
+def test_a_path_that_has_taken_all_its_steps_says_so():
+    found, report = end_of(followed(pitchfork().path(), arc=True, max_steps=7, max_step=0.1))
+    assert found[-1].number == 7
+    assert report.cause is Cause.STEPS
+    assert report.last_load == report.load == found[-1].load
+    assert 0.0 < report.step <= 0.1
+    for said in (report.message, report.reason):
+        assert "7 steps" in said
+        assert "continuation.max_steps is 7" in said
+    # what can be told of the last state
+    excess = report.diagnosis.negative_pivots - report.diagnosis.expected_negative_pivots
+    assert excess == found[-1].linearisation.unstable_modes
+    assert report.diagnosis.worst_residual is None
+
+
+@pytest.mark.parametrize("arc", [False, True])
+@pytest.mark.parametrize("on_instability", ["branch", "stop"])
+def test_a_path_that_cannot_do_at_a_critical_point_what_it_is_asked_for_says_so(
+    arc, on_instability
+):
+    """No mode is found, by which it could be located."""
+    path = pitchfork().path()
+    analyse = path.analyse
+    path.analyse = lambda x, load, number=1: (analyse(x, load, number)[0], None)
+    found, report = end_of(followed(path, arc, on_instability=on_instability))
+    assert report.cause is Cause.NO_MODE
+    assert report.last_load == found[-1].load < 0.5 < report.load
+    assert report.step == report.load - report.last_load
+    assert "no mode" in report.reason
+    assert 'continuation.on_instability = "follow"' in report.advice
+    # and without being asked for anything goes on
+    assert collections.deque(followed(path, arc), maxlen=1)[0].load == 1.0
+
+
+@pytest.mark.parametrize(
+    ("arc", "advice"),
+    [(False, '"stop", or continuation.method = "arc_length"'), (True, '"follow" or "stop"')],
+)
+def test_a_path_that_finds_no_branch_says_so(arc, advice):
+    """By load, where it falls; along the arc, where there is none, as y is held at a constant."""
+    toy = pitchfork(quartic=1.0) if not arc else falling(0.5)
+    if arc:
+        toy.gradient = lambda z, t: [z[0] - t, (0.5 - z[0]) * z[1] + 1e9 * abs(z[1]) * z[1]]
+        toy.hessian = lambda z, t: [[1.0, 0.0], [-z[1], 0.5 - z[0] + 2e9 * abs(z[1])]]
+    found, report = end_of(followed(toy.path(), arc, on_instability="branch"))
+    assert report.cause is Cause.NO_BRANCH
+    assert report.last_load == report.load == found[-1].load == pytest.approx(0.5, rel=1e-5)
+    assert found[-1].critical is not None
+    assert "branch" in report.reason
+    assert report.advice.endswith(advice)
+    assert abs(report.diagnosis.lowest_eigenvalue) < 1e-4
+
+
+@pytest.mark.parametrize("arc", [False, True])
+@pytest.mark.parametrize("first", [True, False])
+def test_a_tangent_without_a_factor_ends_a_path_with_a_report(arc, first):
+    """At load 0, and beyond load 0.5."""
+    path = pitchfork().path()
+    linearise = path.linearise
+
+    def failing(x, load):
+        if first or load > 0.4:
+            raise SingularTangentError("The tangent could not be factorised.")
+        return linearise(x, load)
+
+    path.linearise = failing
+    found, report = end_of(followed(path, arc, min_step=1e-3))
+    assert report.cause is Cause.SINGULAR
+    assert "no factor" in report.reason
+    assert bool(found) != first
+    assert report.last_load == (0.0 if first else pytest.approx(0.4, abs=2e-3))
+
+
+def test_every_error_with_which_a_path_ends_carries_a_report():
+    """Those that carry none are caught on the way: jumps, and tangents without a factor."""
+    folder = Path(pantograph_fem.solve.__file__).parent
+    calls = [
+        (module.name, call)
+        for module in folder.glob("*.py")
+        for call in ast.walk(ast.parse(module.read_text()))
+        if isinstance(call, ast.Call) and getattr(call.func, "id", "") == "PathError"
+    ]
+    assert calls
+    assert not [module for module, call in calls if len(call.args) + len(call.keywords) < 2]
+
+
+def test_a_path_that_has_taken_all_its_steps_leaves_a_file(tmp_path):
+    case = case_from_dict(
+        {
+            "name": "bent",
+            "kind": "beam",
+            "beam": {"length": 1.0},
+            "material": {"stretch": 1e4, "bending": 1.0},
+            "ends": {"right": {"support": "free", "force": [0.0, 1.0]}},
+            "mesh": {"size": 0.25},
+            "continuation": {"method": "arc_length", "max_steps": 3},
+            "output": {"figures": False, "fields": "none"},
+        }
+    )
+    with pytest.raises(PathError) as caught:
+        run(case, tmp_path, quiet=True)
+    written = json.loads((tmp_path / "failure.json").read_text())
+    assert written["message"] == str(caught.value)
+    assert written["cause"] == "steps"
+    assert "continuation.max_steps" in written["advice"]
+    assert "sentence" not in written
+    assert written["negative_pivots"] == written["expected_negative_pivots"]
 
 
 def test_the_worst_unknown_is_named():

@@ -61,7 +61,8 @@ def test_a_column_stops_at_its_critical_load(tmp_path, method, left, right, mu):
     )
     assert summary["status"] == "stopped at a critical load"
     (found,) = summary["critical_points"]
-    assert found == {"step": rows[-1].step, "load": rows[-1].load, "kind": "bifurcation"}
+    last = rows[-1]
+    assert found == {"step": last.step, "load": last.load, "kind": "bifurcation", "modes": 1}
     assert 1.7 * rows[-1].load == pytest.approx(1.0, rel=1e-5)
     assert abs(rows[-1].extra["lowest_eigenvalue"]) < 1e-6
     # The mode is a quarter or a half of a sine wave, of which the largest displacement is 1.
@@ -91,6 +92,38 @@ def test_a_perfect_column_is_followed_onto_its_buckled_branch(tmp_path, method):
         assert row.energy == pytest.approx(exact.energy, rel=1e-6)
         place = [1 + row.extra["tip_ux"], side * row.extra["tip_uy"]]
         np.testing.assert_allclose(place, exact.place, atol=1e-6)
+
+
+@pytest.mark.parametrize("method", ["load", "arc_length"])
+def test_a_straight_column_passes_four_critical_loads_each_with_its_mode(tmp_path, method):
+    """Stiff enough that the loads are some nine tenths of Euler's even in the fourth mode."""
+    K_e = 100 * K_E
+    exact = np.array([critical_load(2.0 / (2 * n - 1), K_e) for n in (1, 2, 3, 4)])
+    full = 60.0 * exact[0]
+    rows, summary = solved(
+        tmp_path,
+        COLUMN,
+        material={"stretch": K_e},
+        ends={"right": {"force": [-full, 0.0]}},
+        continuation={"method": method},
+        output={"eigenvalues": True},
+    )
+    points = summary["critical_points"]
+    assert [point["kind"] for point in points] == ["bifurcation"] * 4
+    np.testing.assert_allclose([point["load"] for point in points], exact / full, rtol=2e-5)
+    row_of = {row.step: row for row in rows}
+    states = read_fields(tmp_path)
+    S = states.grid.points[:, 0]
+    for n, point in enumerate(points):
+        excess = row_of[point["step"]].negative_pivots
+        excess -= row_of[point["step"]].expected_negative_pivots
+        assert excess == n
+        mode = states.fields(point["step"])["mode"][:, 1]
+        shape = 1 - np.cos((n + 0.5) * np.pi * S)
+        np.testing.assert_allclose(np.abs(mode), shape / shape.max(), atol=1e-3)
+    lowest = [row.extra["lowest_eigenvalue"] for row in rows]
+    # the first mode resists less and less, whichever else is critical
+    assert (np.diff(lowest) < 1e-12).all()
 
 
 def test_inertia_and_the_lowest_eigenvalue_agree_through_the_first_two_buckling_loads():
@@ -247,15 +280,68 @@ def test_a_run_taken_up_behind_its_critical_point_is_the_same_run(tmp_path, meth
     case = case_from_dict(merged(COLUMN, changes))
     run(case, tmp_path, quiet=True)
     whole = read_history(tmp_path / "history.csv")
-    broken = _Interrupted(after=int(0.7 * len(whole["load"])))
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Progress, "accepted", broken)
-        with pytest.raises(KeyboardInterrupt):
-            run(case, tmp_path, quiet=True)
+    points = json.loads((tmp_path / "summary.json").read_text())["critical_points"]
+    interrupt(case, tmp_path, after=int(0.7 * len(whole["load"])))
     run(case, tmp_path, resume=True, quiet=True)
     again = read_history(tmp_path / "history.csv")
     np.testing.assert_allclose(again["load"], whole["load"], rtol=1e-9)
     np.testing.assert_allclose(again["force_x"], whole["force_x"], rtol=1e-9)
+    kept = json.loads((tmp_path / "summary.json").read_text())["critical_points"]
+    assert kept == points
+    assert len(points) == 1
+
+
+#: To twelve times its critical load on the straight path: two modes are lost.
+ON_AND_ON = merged(
+    COLUMN,
+    {
+        "ends": {"right": {"force": [-12.0 * critical_load(2.0), 0.0]}},
+        "mesh": {"size": 0.1},
+        "output": {"fields": "none"},
+    },
+)
+
+
+@pytest.fixture(scope="module")
+def on_and_on(tmp_path_factory):
+    """Critical points of the same run without an interruption."""
+    return solved(tmp_path_factory.mktemp("whole"), ON_AND_ON)[1]["critical_points"]
+
+
+@pytest.mark.parametrize("behind", [0, 1, 2])
+def test_critical_points_found_before_an_interruption_are_kept_and_none_is_doubled(
+    tmp_path, on_and_on, behind
+):
+    """It dies so many states behind the second point: that may have to be found again."""
+    assert len(on_and_on) == 2
+    case = case_from_dict(ON_AND_ON)
+    interrupt(case, tmp_path, after=on_and_on[1]["step"] + behind)
+    run(case, tmp_path, resume=True, quiet=True)
+    points = json.loads((tmp_path / "summary.json").read_text())["critical_points"]
+    assert [point["step"] for point in points] == [point["step"] for point in on_and_on]
+    loads = [point["load"] for point in points]
+    np.testing.assert_allclose(loads, [point["load"] for point in on_and_on], rtol=1e-6)
+
+
+def test_a_checkpoint_of_an_earlier_version_is_taken_up(tmp_path, on_and_on):
+    """It holds no critical points: those that come are found."""
+    case = case_from_dict(ON_AND_ON)
+    interrupt(case, tmp_path, after=on_and_on[0]["step"] + 3)
+    path = tmp_path / "checkpoint.npz"
+    with np.load(path) as file:
+        old = {name: file[name] for name in file.files if name != "critical_points"}
+    np.savez(path, **old)
+    run(case, tmp_path, resume=True, quiet=True)
+    (point,) = json.loads((tmp_path / "summary.json").read_text())["critical_points"]
+    assert point["load"] == pytest.approx(on_and_on[1]["load"], rel=1e-6)
+
+
+def interrupt(case, folder, after):
+    """Run it until it has written so many states and dies at the next."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Progress, "accepted", _Interrupted(after))
+        with pytest.raises(KeyboardInterrupt):
+            run(case, folder, quiet=True)
 
 
 class _Interrupted:

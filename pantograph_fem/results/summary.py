@@ -68,7 +68,7 @@ def write_summary(
     accuracy
         What was asked of an adapted mesh and what it reached; None, and left out, for others.
     critical_points
-        Step, load and kind of each critical point; left out where there is none.
+        Step, load, kind and number of modes of each critical point; left out where there is none.
     cutbacks
         Number of steps that were rejected and tried again with a smaller one.
 

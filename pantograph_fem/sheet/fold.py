@@ -27,6 +27,10 @@ class FoldCheck:
     .. math:: \det\mathbf F = \mathbf a_1\times\mathbf a_2 = \rho_1\rho_2\cos\psi,
 
     a positive determinant is the same as a shear angle below π/2.
+
+    The turn of a fibre from one cell to the next needs no check of its own. Along the edge between
+    them both have the same derivative of the placement; with positive determinants they place what
+    is beside the edge on the same side of it, so that the fibre turns by less than π.
     """
 
     def __init__(self, discretisation: Discretisation, domain: mesh.Mesh) -> None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from mpi4py import MPI
 
 from ..case import SheetCase
@@ -31,6 +33,10 @@ from .observables import sheet_observables
 if TYPE_CHECKING:
     from .measurements import SheetMeasurements
 
+#: Stretch stiffness, over what else resists, from which fibres hardly stretch. The paper's: 840.
+_INEXTENSIBLE = 1e5
+#: Degree from which elements do not lock then.
+_FREE = 5
 _REPORTED = GRIPS.index("top")
 
 
@@ -130,4 +136,14 @@ def _remedies(case: SheetCase) -> Remedies:
         for name in ("stretch", "bending", "shear")
         if not getattr(case.material, name)
     )
+    if _locks(case):
+        return Remedies("discretisation.degree = 5, as elements of low degree lock", missing)
     return Remedies("a finer mesh" if own else "a finer mesh (a smaller mesh.corner_size)", missing)
+
+
+def _locks(case: SheetCase) -> bool:
+    """Whether fibres can hardly stretch for elements whose degree is too low for that."""
+    material = case.material
+    K_e, K_b = (np.max(value or 0.0) for value in (material.stretch, material.bending))
+    easy = max(material.shear or 0.0, K_b / case.sheet.width**2)
+    return bool(K_e > _INEXTENSIBLE * easy) and case.discretisation.degree < _FREE

@@ -14,10 +14,17 @@ _FALLEN = 0.1
 def advise(report: FailureReport, remedies: Remedies) -> str:
     """The setting that the cause asks for; the first of these that applies.
 
-    The load turns back: steps along the arc. The tangent has no factor: an effect that resists.
-    Newton's method was about to arrive: more iterations. The body folds: no more motion. Even the
-    smallest step is long: a smaller one. What is left is a mesh too coarse for the state.
+    The steps ran out: more or longer ones. A critical point is not what was asked for: to follow
+    the path. The load turns back: steps along the arc. The tangent has no factor: an effect that
+    resists. Newton's method was about to arrive: more iterations. The body folds: no more motion.
+    Even the smallest step is long: a smaller one. What is left is a mesh too coarse for the state.
     """
+    if report.cause is Cause.STEPS:
+        return "a larger continuation.max_steps or continuation.max_step"
+    if report.cause is Cause.NO_MODE:
+        return f'{remedies.finer}, or continuation.on_instability = "follow"'
+    if report.cause is Cause.NO_BRANCH:
+        return 'continuation.on_instability = "follow" or "stop"'
     if report.turns_back_at is not None:
         return 'continuation.method = "arc_length"'
     singular = report.cause is Cause.SINGULAR

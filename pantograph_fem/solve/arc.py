@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .ending import linearise_first
 from .equilibrium import Array, ModalEquilibrium, Plane
 from .origin import Origin
 from .predictor import PathPoint
@@ -36,7 +37,7 @@ class Arc:
     @classmethod
     def from_rest(cls, problem: ModalEquilibrium, rest: Array) -> Arc:
         """The arc of the path that begins at `rest`, the state at load 0."""
-        rate = problem.linearise(rest, 0.0).rate
+        rate = linearise_first(problem, rest, 0.0, problem).rate
         return cls(problem, max(problem.inner(rate, rate) ** 0.5, _LEAST_SCALE))
 
     def product(self, a: Point, b: Point) -> float:

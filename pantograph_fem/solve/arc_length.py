@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from ..errors import PathError
 from .arc import Arc, Parabola, Point
 from .continuation import Rejected
-from .critical import CriticalPoint, JumpError
-from .ending import elsewhere, linearise_first, no_way_on
+from .critical import Change, CriticalPoint, JumpError, locate
+from .ending import elsewhere, linearise_first, no_way_on, too_many_steps, without_factor
 from .equilibrium import Array, Correction, Linearisation, ModalEquilibrium
-from .instability import Change, OnInstability, critical_point, decide, leave
+from .factorisation import SingularTangentError
+from .instability import OnInstability, pass_critical
 from .origin import Origin
 from .predictor import PathPoint
 from .step_size import StepSettings, StepSize
-from .steps import Checkpoint, Step, accepted_step, critical_step
+from .steps import Checkpoint, Step, accepted_step
 
 #: Share of a step by which its end may miss what the tangent predicts. Farther away are states
 #: of other paths, or the path turns too sharply for the step.
@@ -34,14 +34,14 @@ def follow_arc_length(
 
     The path begins with rising loads. Step sizes are lengths of :class:`Arc`. Wherever the path
     rises past a stop, the state at the stop is found by load control; the last stop ends the path.
-    Critical points are located where stability is lost or regained, see
+    Critical points are located wherever the number of unstable modes changes, see
     :func:`pantograph_fem.solve.continuation.follow`. `rest` is the state at load 0.
 
     Raises
     ------
     PathError
-        Where the smallest step fails too, with a report; where no branch is found; or where
-        `max_steps` are done before the last stop is reached.
+        Where the smallest step fails too; where no branch is found; or where `max_steps` are done
+        before the last stop is reached. With a report.
     """
     size = StepSize(settings, start.step_size)
     arc = Arc.from_rest(problem, rest)
@@ -55,23 +55,22 @@ def follow_arc_length(
         if size.finished(here.load):
             return
         if number >= max_steps:
-            raise PathError(_too_long(here.load, number))
+            raise too_many_steps(problem, here, number, max_steps, size.value)
         before = here
-        end, new, point = _advance(arc, points, linearisation, size, on_rejected)
-        if new.stable != linearisation.stable:
+        end, new, critical = _advance(arc, points, linearisation, size, on_rejected)
+        if new.unstable_modes != linearisation.unstable_modes:
             change = Change(here.load, linearisation, end.load, new)
-            decision = decide(point, change, end, on_instability, settings.stops)
-            if decision is not None:
-                point = decision.point
-                number += 1
-                yield critical_step(number, point, checkpoint, settings)
-                if decision.ends or size.finished(point.load):
-                    return
-                if decision.leaves:
-                    branch = leave(problem, point, size.next_stop(point.load), upwards=False)
-                    end, new = branch.correction, branch.linearisation
-                    before = PathPoint(point.load, point.x, point.linearisation.rate)
-                    size.restart(arc.length(new.x - point.x, end.load - point.load))
+            passage = yield from pass_critical(
+                problem, critical, change, end, checkpoint, size, on_instability, upwards=False
+            )
+            if passage.ended:
+                return
+            number = passage.number
+            if passage.left is not None:
+                point, branch = passage.left
+                end, new = branch.correction, branch.linearisation
+                before = PathPoint(point.load, point.x, point.linearisation.rate)
+                size.restart(arc.length(new.x - point.x, end.load - point.load))
         linearisation = new
         points = (before, PathPoint(end.load, new.x, new.rate))
         number, iterations = number + 1, end.iterations
@@ -84,24 +83,26 @@ def _advance(
     linearisation: Linearisation,
     size: StepSize,
     on_rejected: Rejected | None,
-) -> tuple[Correction, Linearisation, CriticalPoint | None]:
-    """The next state that is accepted, and a critical point before it, after cut-backs."""
+) -> tuple[Correction, Linearisation, tuple[CriticalPoint, ...]]:
+    """The next state that is accepted, and the critical points before it, after cut-backs."""
     here = points[-1]
     ahead = Parabola.through(arc, points, linearisation.rate)
     while True:
         step = size.value
         found = _try(arc, ahead, step, size.next_stop(here.load), size.settings.min_step)
         if found.converged:
-            new = arc.problem.linearise(found.x, found.load)
-            if new.stable == linearisation.stable:
-                return found, new, None
             try:
+                new = arc.problem.linearise(found.x, found.load)
+                if new.unstable_modes == linearisation.unstable_modes:
+                    return found, new, ()
                 change = Change(here.load, linearisation, found.load, new)
                 length = arc.length(new.x - here.x, found.load - here.load)
                 between = _between(arc, here, found)
-                return found, new, critical_point(arc.problem, change, between, length)
+                return found, new, locate(arc.problem, change, between, length)
             except JumpError as error:
                 found = elsewhere(found, str(error))
+            except SingularTangentError:
+                found = without_factor(found)
         if on_rejected is not None:
             on_rejected(ahead.at(step).load, step, found.reason)
         if not size.rejected(step):
@@ -139,11 +140,3 @@ def _between(arc: Arc, here: PathPoint, end: Correction) -> Callable[[float], Co
         return arc.problem.correct_on_plane(arc.plane(point, chord, Origin(here.x, step)))
 
     return state_at
-
-
-def _too_long(load: float, number: int) -> str:
-    return (
-        f"The path was at load factor {load:.6g} after {number} steps, which is "
-        "continuation.max_steps, and had not come to the full load. Every state is saved. "
-        "Try a larger continuation.max_steps or continuation.max_step."
-    )

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from .critical import CriticalPoint
 from .equilibrium import Correction, Linearisation, ModalEquilibrium, Plane
+from .factorisation import SingularTangentError
 from .origin import Origin
 
 #: Mean square displacements along the critical mode, in typical sizes, to try: root of it.
@@ -65,4 +66,7 @@ def _displaced(
     # Displaced by more than along the mode: some other state, with which the path does not cross.
     if problem.inner(away, away) > amplitude**2:
         return None
-    return BranchState(found, problem.linearise(found.x, found.load))
+    try:
+        return BranchState(found, problem.linearise(found.x, found.load))
+    except SingularTangentError:
+        return None

@@ -20,3 +20,9 @@ class Cause(Enum):
     OBJECTION = "objection"
     #: An equilibrium was found which is none of the path.
     ELSEWHERE = "elsewhere"
+    #: The path had taken as many steps as it may.
+    STEPS = "steps"
+    #: It was to end or to be left at a critical point, of which no mode was found.
+    NO_MODE = "no mode"
+    #: It was to be left for a branch, and none was found.
+    NO_BRANCH = "no branch"

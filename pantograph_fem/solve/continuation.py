@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from .critical import CriticalPoint, JumpError
-from .ending import elsewhere, linearise_first, no_way_on
+from .critical import Change, CriticalPoint, JumpError, locate
+from .ending import elsewhere, linearise_first, no_way_on, without_factor
 from .equilibrium import (
     Array,
     Correction,
@@ -17,11 +17,12 @@ from .equilibrium import (
     Linearisation,
     ModalEquilibrium,
 )
-from .instability import Change, OnInstability, critical_point, decide, leave
+from .factorisation import SingularTangentError
+from .instability import OnInstability, pass_critical
 from .ladder import rescue
 from .predictor import PathPoint, PredictorName, predict
 from .step_size import StepSettings, StepSize
-from .steps import Checkpoint, Step, accepted_step, critical_step, start_at
+from .steps import Checkpoint, Step, accepted_step, start_at
 
 __all__ = [
     "Array",
@@ -56,15 +57,16 @@ def follow(
     continuation. So the first unstable state is accepted only after a step of at most
     `settings.critical_step`: then the path itself has lost stability.
 
-    With `watch`, the same problem, the critical point is then located, and is a step of its own.
-    There `on_instability` says whether to "follow" the path, to "stop", or to "branch": to go on,
-    at a bifurcation, along the stable path that branches off. Before a smallest step is given up,
-    other ways to its end are tried, see :func:`pantograph_fem.solve.ladder.rescue`.
+    With `watch`, the same problem, critical points are located wherever the number of unstable
+    modes changes, and each is a step of its own. Where stability is lost, `on_instability` says
+    whether to "follow" the path, to "stop", or to "branch": to go on, at a bifurcation, along the
+    stable path that branches off. Before a smallest step is given up, other ways to its end are
+    tried, see :func:`pantograph_fem.solve.ladder.rescue`.
 
     Raises
     ------
     PathError
-        Where the smallest step fails too, with a report; or no stable branch is found.
+        Where the smallest step fails too, or no stable branch is found; with a report.
     """
     size = StepSize(settings, start.step_size)
     *earlier, here = start.points
@@ -77,24 +79,23 @@ def follow(
         yield accepted_step(checkpoint, linearisation, settings)
         if size.finished(here.load):
             return
-        correction, new, point = _advance(
+        correction, new, critical = _advance(
             problem, points, linearisation, size, predictor, on_rejected, watch
         )
         earlier = [here]
-        if watch is not None and new.stable != linearisation.stable:
+        if watch is not None and new.unstable_modes != linearisation.unstable_modes:
             change = Change(here.load, linearisation, correction.load, new)
-            decision = decide(point, change, correction, on_instability, settings.stops)
-            if decision is not None:
-                point = decision.point
-                number += 1
-                yield critical_step(number, point, checkpoint, settings)
-                if decision.ends or size.finished(point.load):
-                    return
-                if decision.leaves:
-                    branch = leave(watch, point, size.next_stop(point.load))
-                    correction, new = branch.correction, branch.linearisation
-                    earlier = []
-                    size.restart(correction.load - point.load)
+            passage = yield from pass_critical(
+                watch, critical, change, correction, checkpoint, size, on_instability
+            )
+            if passage.ended:
+                return
+            number = passage.number
+            if passage.left is not None:
+                point, branch = passage.left
+                correction, new = branch.correction, branch.linearisation
+                earlier = []
+                size.restart(correction.load - point.load)
         linearisation = new
         here = PathPoint(correction.load, linearisation.x)
         number, iterations = number + 1, correction.iterations
@@ -125,32 +126,40 @@ def _advance(
     predictor: PredictorName,
     on_rejected: Rejected | None,
     watch: ModalEquilibrium | None,
-) -> tuple[Correction, Linearisation, CriticalPoint | None]:
-    """The next state that is accepted, and a critical point before it, after cut-backs."""
+) -> tuple[Correction, Linearisation, tuple[CriticalPoint, ...]]:
+    """The next state that is accepted, and the critical points before it, after cut-backs."""
     last = points[-1].load
+
+    def critical(found: Correction, new: Linearisation) -> tuple[CriticalPoint, ...]:
+        if watch is None or new.unstable_modes == before.unstable_modes:
+            return ()
+        change = Change(last, before, found.load, new)
+        return locate(watch, change, _between(watch, predictor, points, found))
+
     while True:
         load = size.next_load(last)
         found = problem.correct(predict(predictor, points, load), load)
         if found.converged:
-            new = problem.linearise(found.x, load)
-            if new.stable == before.stable:
-                return found, new, None
-            if before.stable and size.rejected(load - last, size.settings.critical_step):
-                if on_rejected is not None:
-                    on_rejected(load, load - last, "the state found is unstable")
-                continue
-            if watch is None:
-                return found, new, None
             try:
-                change = Change(last, before, load, new)
-                between = _between(watch, predictor, points, found)
-                return found, new, critical_point(watch, change, between)
+                new = problem.linearise(found.x, load)
+                lost = before.stable and not new.stable
+                if lost and size.rejected(load - last, size.settings.critical_step):
+                    if on_rejected is not None:
+                        on_rejected(load, load - last, "the state found is unstable")
+                    continue
+                return found, new, critical(found, new)
             except JumpError as error:
                 found = elsewhere(found, str(error))
+            except SingularTangentError:
+                found = without_factor(found)
         if not size.rejected(load - last):
             rescued = rescue(watch, predictor, points, load, before.stable) if watch else None
             if rescued is None:
                 raise no_way_on(points, load - last, found, watch)
-            return *rescued, None
+            try:
+                return *rescued, critical(*rescued)
+            except JumpError as error:
+                found = elsewhere(rescued[0], str(error))
+                raise no_way_on(points, load - last, found, watch) from None
         if on_rejected is not None:
             on_rejected(load, load - last, found.reason)

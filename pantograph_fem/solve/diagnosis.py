@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from .eigenvalue import LowestMode
+from .eigenvalue import ModesNearZero
 from .equilibrium import Array, Correction
 from .factorisation import SingularTangentError
 from .failure import Diagnosis
@@ -18,7 +18,7 @@ from .problem import Problem
 def diagnose(
     problem: Problem,
     newton: NewtonSolver,
-    modes: LowestMode,
+    modes: ModesNearZero,
     set_load: Callable[[float], None],
     last: tuple[Array, float],
     failed: Correction,
@@ -51,7 +51,7 @@ def diagnose(
             zero_pivots=inertia.zero,
             condition=factor.condition(),
         )
-        mode = modes.find(max(inertia.negative - expected, 0))
+        mode = modes.find(min(expected - inertia.negative, 0))
         return found if mode is None else replace(found, lowest_eigenvalue=mode[0])
     except SingularTangentError:
         return found

@@ -1,4 +1,4 @@
-"""The lowest eigenvalue of a tangent that has been factorised, by back-substitutions alone."""
+"""Eigenvalues next to zero of a factorised tangent, by back-substitutions alone."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ _RESTARTS = 100
 _AS_LARGE = 0.9
 
 
-class LowestMode:
-    r"""Lowest eigenvalue μ of A φ = μ B φ with B diagonal and, for multipliers say, singular.
+class ModesNearZero:
+    r"""Eigenvalues μ of A φ = μ B φ with B diagonal and, for multipliers say, singular.
 
     With :math:`D = B^{1/2}` the symmetric operator :math:`D A^{-1} D` has the eigenvalues 1/μ,
     and 0 for what B does not see. Its extreme eigenvalues are found by SLEPc's Krylov-Schur
@@ -42,34 +42,36 @@ class LowestMode:
         self._back_substitute(v)
         w.pointwiseMult(self._left, self._root)
 
-    def find(self, negative: int) -> tuple[float, Array] | None:
-        """The eigenvalue and its vector with φ·Bφ = 1, or None where the method fails.
+    def find(self, place: int) -> tuple[float, Array] | None:
+        """An eigenvalue and its vector with φ·Bφ = 1, or None where the method fails.
 
         Where A has been factorised at another state since, it is that state's. A collective call.
 
         Parameters
         ----------
-        negative
-            Negative eigenvalues that there are, which inertia tells. Without any, the
-            eigenvalue nearest to zero is returned, whatever its sign.
+        place
+            Which one, counted from zero: -1 is the first below it, 1 the first above, and 0 the
+            nearest, whatever its sign. With n negative ones, which inertia tells, -n is the lowest.
         """
         from slepc4py import SLEPc  # type: ignore[import-untyped]  # only where it is asked for: it takes a while to load
 
         solver = SLEPc.EPS().create(self._operator.comm)
         solver.setOperators(self._operator)
         solver.setProblemType(SLEPc.EPS.ProblemType.HEP)
-        which = SLEPc.EPS.Which.SMALLEST_REAL if negative else SLEPc.EPS.Which.LARGEST_MAGNITUDE
-        solver.setWhichEigenpairs(which)
-        solver.setDimensions(max(negative, 1))
+        sides = SLEPc.EPS.Which
+        which = (sides.LARGEST_MAGNITUDE, sides.LARGEST_REAL, sides.SMALLEST_REAL)
+        solver.setWhichEigenpairs(which[(place > 0) - (place < 0)])
+        wanted = max(abs(place), 1)
+        solver.setDimensions(wanted)
         solver.setTolerances(_TOLERANCE, _RESTARTS)
         solver.setInitialSpace(self._start())
         solver.solve()
-        if solver.getConverged() < max(negative, 1):
+        if solver.getConverged() < wanted:
             solver.destroy()
             return None
         vector = self._operator.createVecLeft()
-        # Of the negative ones, 1/μ nearest to zero is that of the lowest μ.
-        inverse = self._comm.bcast(solver.getEigenpair(max(negative, 1) - 1, vector).real)
+        # 1/μ comes in the order of its size: that of the μ next to zero first.
+        inverse = self._comm.bcast(solver.getEigenpair(wanted - 1, vector).real)
         solver.destroy()
         self._back_substitute(vector)
         phi = self._left.array / inverse
@@ -91,3 +93,15 @@ class LowestMode:
         largest = max(self._comm.allgather(float(np.abs(values).max(initial=0.0))))
         found = values[np.abs(values) >= _AS_LARGE * largest][:1]
         return float(np.sign(np.concatenate(self._comm.allgather(found))[0]))
+
+
+def place_of(number: int, negative: int, zero: int) -> int:
+    """Place of an eigenvalue, as :meth:`ModesNearZero.find` has it, by its number from the lowest.
+
+    `negative` and `zero` are those that inertia tells.
+    """
+    if number <= negative:
+        return number - negative - 1
+    above = number - negative - zero  # zeros have no place: MUMPS solves for nothing along them
+    nearest = above <= 0 or (number == 1 and negative == 0)
+    return 0 if nearest else above

@@ -8,6 +8,7 @@ from dataclasses import replace
 from ..errors import PathError
 from .advice import advise
 from .cause import Cause
+from .critical import Change, CriticalPoint
 from .equilibrium import Array, Correction, Equilibrium, Linearisation, ModalEquilibrium
 from .factorisation import SingularTangentError
 from .failure import FailureReport, Remedies
@@ -43,14 +44,78 @@ def no_way_on(
     report = FailureReport(
         here.load, failed.load, step, failed.cause or Cause.STALLED, failed.reason, failed.residuals
     )
-    remedies = Remedies()
     if problem is not None:
         diagnosis = problem.diagnose(here.x, here.load, failed)
         turns = None if along_arc else limit_load(problem, points, step)
         report = replace(report, diagnosis=diagnosis, turns_back_at=turns)
-        remedies = problem.remedies
-    report = replace(report, advice=advise(report, remedies))
-    return PathError(report.message, report)
+    return _error(report, problem)
+
+
+def too_many_steps(
+    problem: ModalEquilibrium, here: PathPoint, number: int, most: int, step: float
+) -> PathError:
+    """The error with which a path ends that took so many steps and may take no more than `most`.
+
+    `step` is the one that would have been next.
+    """
+    reason = f"{number} steps were taken, and continuation.max_steps is {most}"
+    return _at_a_state(
+        problem,
+        (here.load, here.x),
+        FailureReport(
+            here.load,
+            here.load,
+            step,
+            Cause.STEPS,
+            reason,
+            sentence=f"The path was at load factor {here.load:.6g} after {number} steps, and had "
+            f"not come to the full load; continuation.max_steps is {most}. Every state is saved.",
+        ),
+    )
+
+
+def no_mode(problem: ModalEquilibrium, change: Change) -> PathError:
+    """The error with which a path ends where something is wanted at a point that has no mode."""
+    return _at_a_state(
+        problem,
+        (change.load, change.first.x),
+        FailureReport(
+            change.load,
+            change.next_load,
+            change.next_load - change.load,
+            Cause.NO_MODE,
+            "no mode was found by which to locate the critical point",
+            sentence=f"The path loses stability between load factors {change.load:.9g} and "
+            f"{change.next_load:.9g}, and no mode was found there by which to locate the critical "
+            "point. Every state up to there is saved.",
+        ),
+    )
+
+
+def no_branch(problem: ModalEquilibrium, point: CriticalPoint, upwards: bool) -> PathError:
+    """The error with which a path ends that was to be left at a bifurcation.
+
+    With `upwards` for a branch that rises, which along an arc it need not.
+    """
+    return _at_a_state(
+        problem,
+        (point.load, point.x),
+        FailureReport(
+            point.load,
+            point.load,
+            0.0,
+            Cause.NO_BRANCH,
+            "no stable branch was found to rise from the bifurcation"
+            if upwards
+            else "no branch was found at the bifurcation",
+            sentence=f"The path loses stability at load factor {point.load:.9g}, and no stable "
+            "branch was found to rise from there. Every state up to there is saved."
+            if upwards
+            else f"The path loses stability at load factor {point.load:.9g}, and no branch was "
+            "found there. Every state up to there is saved.",
+        ),
+        ', or continuation.method = "arc_length"' if upwards else "",
+    )
 
 
 def linearise_first(
@@ -67,9 +132,8 @@ def linearise_first(
         return problem.linearise(x, load)
     except SingularTangentError as error:
         reason = "the tangent there has no factor"
-        report = FailureReport(load, load, 0.0, Cause.SINGULAR, reason)
-        advice = advise(report, Remedies() if watch is None else watch.remedies)
-        raise PathError(f"{error} Try {advice}.", replace(report, advice=advice)) from None
+        report = FailureReport(load, load, 0.0, Cause.SINGULAR, reason, sentence=str(error))
+        raise _error(report, watch) from None
 
 
 def limit_load(problem: ModalEquilibrium, points: Sequence[PathPoint], step: float) -> float | None:
@@ -91,3 +155,31 @@ def limit_load(problem: ModalEquilibrium, points: Sequence[PathPoint], step: flo
 def elsewhere(found: Correction, reason: str) -> Correction:
     """A state that is none of the path that is followed, as a failure."""
     return replace(found, converged=False, reason=reason, cause=Cause.ELSEWHERE)
+
+
+def without_factor(found: Correction) -> Correction:
+    """A state whose tangent has no factor, as a failure."""
+    reason = "the tangent at the state found has no factor"
+    return replace(found, converged=False, reason=reason, cause=Cause.SINGULAR)
+
+
+def _at_a_state(
+    problem: ModalEquilibrium,
+    state: tuple[float, Array],
+    report: FailureReport,
+    more_advice: str = "",
+) -> PathError:
+    """Where the path ends at an equilibrium: there is no residual to look into."""
+    load, x = state
+    known = problem.diagnose(x, load, Correction(load, x, True, 0, ""))
+    known = replace(known, worst_residual=None, worst_at="")
+    return _error(replace(report, diagnosis=known), problem, more_advice)
+
+
+def _error(
+    report: FailureReport, problem: ModalEquilibrium | None, more_advice: str = ""
+) -> PathError:
+    """With the advice that goes with the report."""
+    remedies = Remedies() if problem is None else problem.remedies
+    report = replace(report, advice=advise(report, remedies) + more_advice)
+    return PathError(report.message, report)

@@ -77,6 +77,11 @@ class Linearisation:
         """Whether the state is a strict minimum of the energy."""
         return self.zero_pivots == 0 and self.negative_pivots == self.expected_negative_pivots
 
+    @property
+    def unstable_modes(self) -> int:
+        """Number of modes along which the energy does not rise; none of a stable state."""
+        return abs(self.negative_pivots - self.expected_negative_pivots) + self.zero_pivots
+
 
 @dataclass(frozen=True, eq=False)
 class Plane:
@@ -114,8 +119,11 @@ class Equilibrium(Protocol):
 class ModalEquilibrium(Equilibrium, Protocol):
     """What is needed besides for critical points, branches, arcs and where a path is in trouble."""
 
-    def analyse(self, x: Array, load: float) -> Linearisation:
-        """As `linearise`, with the lowest mode."""
+    def analyse(self, x: Array, load: float, number: int = 1) -> tuple[Linearisation, Mode | None]:
+        """As `linearise`, and the mode of an eigenvalue, if it was found; number 1 is the lowest.
+
+        Of a state with n unstable modes, those up to number n are negative.
+        """
 
     def correct_on_plane(self, plane: Plane) -> Correction:
         """Find the equilibrium on a plane, near its point, and its load."""

@@ -73,6 +73,8 @@ class FailureReport:
         What the problem can tell.
     advice
         One setting to try.
+    sentence
+        How it ends, where that is not by a smallest step that failed.
     """
 
     last_load: float
@@ -84,10 +86,13 @@ class FailureReport:
     turns_back_at: float | None = None
     diagnosis: Diagnosis = Diagnosis()
     advice: str = ""
+    sentence: str = ""
 
     @property
     def message(self) -> str:
         """The report as a short paragraph."""
+        if self.sentence:
+            return f"{self.sentence} Try {self.advice}."
         where = self.diagnosis.worst_at
         if self.cause in (Cause.OBJECTION, Cause.ELSEWHERE):
             where = ""  # forces were in balance
@@ -103,5 +108,6 @@ class FailureReport:
     def as_dict(self) -> dict[str, object]:
         """For a file."""
         report = asdict(self)
+        del report["sentence"]  # it is part of the message
         diagnosis = report.pop("diagnosis")
         return {**report, "cause": self.cause.value, **diagnosis}

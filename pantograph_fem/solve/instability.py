@@ -1,15 +1,17 @@
-"""What is done where a path loses stability, or regains it."""
+"""What is done where a path loses stability, or regains it, and at its other critical points."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from ..errors import PathError
 from .branch import BranchState, switch_branch
-from .critical import CriticalPoint, locate
+from .critical import Change, CriticalPoint
+from .ending import no_branch, no_mode
 from .equilibrium import Correction, Linearisation, ModalEquilibrium
+from .step_size import StepSize
+from .steps import Checkpoint, Step, critical_step
 
 #: Relative difference of loads that are both critical, for all that is known.
 _SAME_LOAD = 1e-5
@@ -19,89 +21,81 @@ OnInstability = Literal["follow", "stop", "branch"]
 
 
 @dataclass(frozen=True, eq=False)
-class Change:
-    """Two states in a row, one of which is stable."""
+class Passage:
+    """What came of the critical points between two states.
 
-    load: float
-    first: Linearisation
-    next_load: float
-    second: Linearisation
-
-    @property
-    def lost(self) -> bool:
-        """Whether stability is lost, not regained."""
-        return self.first.stable
-
-
-def critical_point(
-    problem: ModalEquilibrium,
-    change: Change,
-    state_at: Callable[[float], Correction],
-    length: float | None = None,
-) -> CriticalPoint | None:
-    """The critical point between two states; None where no mode could be found.
-
-    `state_at` corrects states at fractions of the way between them, and `length` is that way, by
-    default that of the load.
-
-    Raises
-    ------
-    JumpError
-        If they are states of two paths.
+    Attributes
+    ----------
+    number
+        Of the last step.
+    ended
+        Whether the path ends at the last of them.
+    left
+        The bifurcation at which the path is left, and the first state of the branch; None where
+        it goes on.
     """
 
-    def known_at(way: float) -> Correction:
-        if way == 0.0:
-            return Correction(change.load, change.first.x, True, 0, "")
-        if way == 1.0:
-            return Correction(change.next_load, change.second.x, True, 0, "")
-        return state_at(way)
-
-    loads = change.load, change.next_load
-    length = abs(loads[1] - loads[0]) if length is None else length
-    return locate(problem, known_at, loads, length, change.lost)
+    number: int
+    ended: bool = False
+    left: tuple[CriticalPoint, BranchState] | None = None
 
 
-@dataclass(frozen=True, eq=False)
-class Decision:
-    """What is done at a critical point: whether the path is left there, or ends there."""
-
-    point: CriticalPoint
-    leaves: bool
-    ends: bool
-
-
-def decide(
-    point: CriticalPoint | None,
+def pass_critical(
+    problem: ModalEquilibrium,
+    points: Sequence[CriticalPoint],
     change: Change,
     end: Correction,
+    checkpoint: Checkpoint,
+    size: StepSize,
     on_instability: OnInstability,
-    stops: Sequence[float],
-) -> Decision | None:
-    """What the user wants at a critical point, of which `end` is the state behind.
+    upwards: bool = True,
+) -> Generator[Step, None, Passage]:
+    """Yield critical points as steps until the path is left or ends at one, as the user wants it.
 
     A path is left where it loses stability at a bifurcation, and ends only where it loses it.
-    None where the point could not be located, and nothing is wanted there.
+
+    Parameters
+    ----------
+    problem
+        Finds branches.
+    points, change
+        The critical points, and the states before and behind them.
+    end
+        The state behind them, as it was found.
+    checkpoint
+        Of the state before them.
+    size
+        Knows the stops.
+    on_instability
+        What the user wants.
+    upwards
+        Whether a branch must be stable and rise.
 
     Raises
     ------
     PathError
-        If the path is to end at a point that could not be located, or to be left there.
+        If the path is to end or to be left where stability is lost, and no point was located
+        there; or if no branch is found.
     """
-    lost = change.lost
-    if point is None:
-        if not lost or on_instability == "follow":
-            return None
-        raise PathError(
-            f"The path loses stability between load factors {change.load:.9g} and "
-            f"{change.next_load:.9g}, and no mode was found there by which to locate the critical "
-            "point. Every state up to there is saved. Try a finer mesh, or "
-            'continuation.on_instability = "follow".'
+    stops = size.settings.stops
+    if change.lost and on_instability != "follow" and not any(p.loses_stability for p in points):
+        raise no_mode(problem, change)
+    number = checkpoint.number
+    for point in points:
+        leaves = (
+            point.loses_stability and on_instability == "branch" and point.kind == "bifurcation"
         )
-    leaves = lost and on_instability == "branch" and point.kind == "bifurcation"
-    if leaves:
-        point = _put_on_stop(point, end, change.second, stops)
-    return Decision(point, leaves, lost and on_instability == "stop")
+        here = _put_on_stop(point, end, change.second, stops) if leaves else point
+        number += 1
+        yield critical_step(number, here, checkpoint, size.settings)
+        if (point.loses_stability and on_instability == "stop") or size.finished(here.load):
+            return Passage(number, ended=True)
+        if leaves:
+            branch = switch_branch(problem, here, size.next_stop(here.load), upwards)
+            if branch is None:
+                raise no_branch(problem, here, upwards)
+            return Passage(number, left=(here, branch))
+    return Passage(number)
 
 
 def _put_on_stop(
@@ -116,24 +110,3 @@ def _put_on_stop(
         return point
     there = replace(linearisation, lowest=point.mode)
     return replace(point, load=end.load, linearisation=there)
-
-
-def leave(
-    problem: ModalEquilibrium, point: CriticalPoint, before: float, upwards: bool = True
-) -> BranchState:
-    """The first state on the branch at a bifurcation.
-
-    Raises
-    ------
-    PathError
-        If there is none; with `upwards`, none that is stable at a load above the critical one.
-    """
-    branch = switch_branch(problem, point, before, upwards)
-    if branch is None:
-        raise PathError(
-            f"The path loses stability at load factor {point.load:.9g}, and no stable branch was "
-            "found to rise from there. Every state up to there is saved. Try "
-            'continuation.on_instability = "follow" or "stop"'
-            + (', or continuation.method = "arc_length".' if upwards else ".")
-        )
-    return branch

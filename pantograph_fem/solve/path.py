@@ -14,7 +14,7 @@ from ..stopwatch import Stopwatch
 from .bordered import BorderedNewton
 from .corrector import Corrector
 from .diagnosis import diagnose
-from .eigenvalue import LowestMode
+from .eigenvalue import ModesNearZero, place_of
 from .equilibrium import Array, Correction, Linearisation, Mode, Plane
 from .factorisation import Inertia
 from .failure import Diagnosis, Remedies
@@ -28,6 +28,9 @@ from .problem import Problem
 #: Errors, in typical sizes, up to which an old factor serves a problem that extrapolates stresses.
 #: Farther off its steps leave strains that the next tangent would extrapolate.
 _NEAR = 1e-5
+
+#: By number; number 1 is that of the lowest eigenvalue.
+_Modes = dict[int, Mode | None]
 
 
 class NewtonPath:
@@ -56,7 +59,7 @@ class NewtonPath:
         self._problem = problem
         self._clock = clock
         self._weights = weights
-        self._eigenvalues = eigenvalues
+        self._always = {1} if eigenvalues else set()
         self._load = 0.0
         self._trusted: tuple[float, Array, Array] | None = None
         self._matrix = problem.matrix()
@@ -118,44 +121,46 @@ class NewtonPath:
         The factor, being at hand, corrects the state once more: forces, which are differences of
         large ones in places, gain more digits than the state had.
         """
-        return self._linearise(x, load, self._eigenvalues)
+        return self._linearise(x, load, self._always)[0]
 
     def back_substitute(self, forces: Array) -> Array:
         """Solve (tangent at the state linearised last) y = forces; SI units."""
         with self._clock("solve"):
             return self._newton.back_substitute(forces)
 
-    def analyse(self, x: Array, load: float) -> Linearisation:
-        """As :meth:`linearise`, with the lowest mode in any case."""
-        return self._linearise(x, load, True)
+    def analyse(self, x: Array, load: float, number: int = 1) -> tuple[Linearisation, Mode | None]:
+        """As :meth:`linearise`, and the mode of an eigenvalue; number 1 is the lowest."""
+        linearisation, modes = self._linearise(x, load, {number} | self._always)
+        return linearisation, modes[number]
 
     def inner(self, a: Array, b: Array) -> float:
         """Mean product of the displacements of two states, in typical sizes."""
         return self._metric.inner(a, b)
 
-    def _linearise(self, x: Array, load: float, modal: bool) -> Linearisation:
+    def _linearise(self, x: Array, load: float, numbers: set[int]) -> tuple[Linearisation, _Modes]:
         self._load = load
         with self._clock("solve"):
             inertia = self._newton.factorise(x).inertia
             x = x + self._newton.correction(x)
             force = self._problem.load_rate(x, load)
             rate = self._newton.back_substitute(force)
-            mode = self._lowest(inertia, force, rate) if modal else None
+            modes = {n: self._mode(n, inertia, force, rate) for n in sorted(numbers)}
         clean_up(self._matrix)
         self._trusted = (load, x, rate)
-        return Linearisation(
+        linearisation = Linearisation(
             x=x,
             rate=rate,
             negative_pivots=inertia.negative,
             expected_negative_pivots=self._problem.expected_negative_pivots,
             zero_pivots=inertia.zero,
-            lowest=mode,
+            lowest=modes.get(1),
         )
+        return linearisation, modes
 
-    def _lowest(self, inertia: Inertia, force: Array, rate: Array) -> Mode | None:
-        """The lowest mode at the state that was factorised last."""
-        excess = inertia.negative - self._problem.expected_negative_pivots
-        found = self._modes.find(max(excess, 0))
+    def _mode(self, number: int, inertia: Inertia, force: Array, rate: Array) -> Mode | None:
+        """A mode of the state that was factorised last."""
+        negative = max(inertia.negative - self._problem.expected_negative_pivots, 0)
+        found = self._modes.find(place_of(number, negative, inertia.zero))
         if found is None:
             return None
         eigenvalue, phi = found
@@ -195,5 +200,5 @@ class NewtonPath:
         return BorderedNewton(self._problem, self._newton, self._metric, self._set_load)
 
     @cached_property
-    def _modes(self) -> LowestMode:
-        return LowestMode(self._matrix, self._newton.factorisation, self._metric.weights)
+    def _modes(self) -> ModesNearZero:
+        return ModesNearZero(self._matrix, self._newton.factorisation, self._metric.weights)

@@ -97,15 +97,24 @@ def stability_is_told(found: Evidence) -> str:
     return ""
 
 
-def loss_is_located(found: Evidence) -> str:
-    """Where the path loses stability there is a critical point."""
-    stable = found.history["stable"]
-    lost = np.flatnonzero(stable[:-1] & ~stable[1:])
-    critical = np.isin(found.history["step"], [point["step"] for point in found.critical_points])
-    for i in lost:
-        if not (critical[i] or critical[i + 1]):
-            load = found.column("load")[i + 1]
+def changes_are_located(found: Evidence) -> str:
+    """Where the path loses stability, or more of it, or regains it, there is a critical point.
+
+    At a critical point the excess of negative pivots changes by as many modes as are critical.
+    """
+    stable, excess = found.history["stable"], found.excess
+    modes = {point["step"]: int(point.get("modes", 1)) for point in found.critical_points}
+    critical = [modes.get(step, 0) for step in found.history["step"]]
+    for i, change in enumerate(np.diff(excess)):
+        here = critical[i] + critical[i + 1]
+        load = found.column("load")[i + 1]
+        if stable[i] and not stable[i + 1] and not here:
             return f"stability is lost before load {load:.6g}, at no critical point"
+        if abs(change) > here:
+            return (
+                f"before load {load:.6g} excess negative pivots change from {excess[i]} to "
+                f"{excess[i + 1]}, at {here or 'no'} critical point{'s' * (here > 1)}"
+            )
     return ""
 
 
@@ -127,5 +136,5 @@ ALWAYS = (
     reaches_its_end,
     visits_the_stops,
     stability_is_told,
-    loss_is_located,
+    changes_are_located,
 )

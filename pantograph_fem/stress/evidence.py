@@ -58,7 +58,7 @@ class Evidence:
 
     @property
     def critical_points(self) -> list[dict[str, Any]]:
-        """Step, load and kind of each."""
+        """Step, load, kind and number of modes of each."""
         return list(self.summary.get("critical_points", ()))
 
     @property

@@ -96,6 +96,57 @@ class CriticalLoad:
 
 
 @dataclass(frozen=True)
+class CriticalLoads:
+    """Load fractions of all critical points, in the order of the path, which are of one kind.
+
+    Attributes
+    ----------
+    loads, relative
+        The load fractions and their tolerance.
+    kind
+        "bifurcation" or "limit point".
+    source
+        Where they are from.
+    """
+
+    loads: tuple[float, ...]
+    relative: float
+    kind: str
+    source: str = ""
+    others: tuple[str, ...] = ()
+    of_the_end: bool = True
+
+    def objection(self, found: Evidence, others: Mapping[str, Evidence]) -> str:
+        """Compare one after the other."""
+        points = found.critical_points
+        if len(points) != len(self.loads):
+            return f"critical points found: {len(points)}, of which there are {len(self.loads)}"
+        for number, (point, load) in enumerate(zip(points, self.loads, strict=True), 1):
+            if point["kind"] != self.kind:
+                return f"critical point {number} is a {point['kind']}, not a {self.kind}"
+            if abs(point["load"] / load - 1) > self.relative:
+                return (
+                    f"critical load {number} is {point['load']:.8g}, not {load:.8g} ({self.source})"
+                )
+        return ""
+
+
+@dataclass(frozen=True)
+class Says:
+    """A path that ends on its way says something in particular."""
+
+    text: str
+    others: tuple[str, ...] = ()
+    of_the_end: bool = False
+
+    def objection(self, found: Evidence, others: Mapping[str, Evidence]) -> str:
+        """Look for it in the message."""
+        if found.done or self.text in found.ended.message:
+            return ""
+        return f"the message does not say {self.text!r}: {found.ended.message}"
+
+
+@dataclass(frozen=True)
 class SameAs:
     """A number of the last state is that of another hard case, times a factor.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .expectation import NoLessThan, SameAs, Without
+from .expectation import NoLessThan, SameAs, Says, Without
 from .hard_case import HardCase
 from .sheets import BIAS, COARSE, COARSEST, pulled
 
@@ -71,8 +71,14 @@ def _stretch(decade: int) -> tuple[HardCase, ...]:
         HardCase(f"{name}_degree_6", f"{hard}, degree 6", BIAS, (*stiff, _degree(6))),
         HardCase(name, f"{hard}, degree 5", BIAS, (*stiff, _degree(5)), (same, *stiffer)),
         HardCase(f"{name}_degree_3", f"{hard}, degree 3{locks}", BIAS, stiff, (low,)),
+        # Where it locks, the sheet of degree 2 folds, and the user is told what to do about it.
         HardCase(
-            f"{name}_degree_2", f"{hard}, degree 2{locks}", BIAS, (*stiff, _degree(2)), (low,)
+            f"{name}_degree_2",
+            f"{hard}, degree 2{locks}",
+            BIAS,
+            (*stiff, _degree(2)),
+            (low, Says("discretisation.degree = 5")),
+            may_stop=decade > 5,
         ),
         HardCase(
             f"{name}_micromorphic",
