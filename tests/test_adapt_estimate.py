@@ -30,6 +30,13 @@ def test_estimate_is_neither_far_below_nor_far_above_the_error(rate, growth, num
     assert 0.5 < remaining_error(dofs, values, ORDER) / error < 5
 
 
+@pytest.mark.parametrize("order", [3.0, 4.0, 5.0])
+@pytest.mark.parametrize("rate", [0.8, 1.0, 1.5])
+def test_a_high_order_promises_nothing_where_two_meshes_are_all_there_is(order, rate):
+    dofs, values, error = sequence(rate, 2.5, 2)
+    assert 0.5 < remaining_error(dofs, values, order) / error < 5
+
+
 @pytest.mark.parametrize("rate", [0.6, 1.0, 1.3])
 def test_three_meshes_tell_the_rate(rate):
     dofs, values, error = sequence(rate, 2.5, 3)

@@ -130,6 +130,9 @@ def test_the_first_of_a_series_of_meshes_is_coarse() -> None:
     assert first.size == pytest.approx(0.068 / 6)
     assert first.corner_size == pytest.approx(0.068 / 120)
     assert first.grip_size == pytest.approx(0.002)
+    high = case_from_dict(tables(mesh={"adapt": True}, discretisation={"degree": 6})).mesh
+    assert high.size == pytest.approx(0.068 / 3)
+    assert (first.growth, high.growth) == (0.25, 0.5)
     given = case_from_dict(tables(mesh={"adapt": True, "size": 0.004, "corner_size": 0.001})).mesh
     assert (given.size, given.corner_size) == (0.004, 0.001)
 

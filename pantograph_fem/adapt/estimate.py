@@ -6,7 +6,9 @@ error,
 .. math:: e_n = \frac{\|q_n - q_{n-1}\|}{(N_n/N_{n-1})^r - 1}
 
 The energy of a scheme of order p on meshes that suit it has r = p. A lower rate is taken, so that
-the estimate is rather too large: the one at which the last two differences fall, within bounds.
+the estimate is rather too large: the one at which the last two differences fall, within bounds. Of
+two meshes alone, of a high order, no more is assumed than the rate of what is not smooth: the
+corners, whose elements shrink by a bounded ratio from mesh to mesh, and the kinks of the pivots.
 """
 
 from __future__ import annotations
@@ -22,6 +24,9 @@ Array = NDArray[np.float64]
 
 #: Rates over the order p: the lowest and highest believed, and that of two meshes alone.
 SLOWEST, FASTEST, ASSUMED = 0.25, 0.7, 0.625
+#: Orders from which on errors of what is not smooth count, and their rate. The lowest rate
+#: believed is no more than half of it.
+HIGH, ROUGH = 2.0, 1.0
 #: How much more a difference may fall than at the highest rate before chance is suspected.
 _LUCK = 1.5
 
@@ -53,9 +58,9 @@ def remaining_error(dofs: Sequence[int], values: Sequence[Sequence[float]], orde
 
 def observed_rate(N: Array, differences: Array, order: float) -> float:
     """Rate r at which the last two differences fall, between those that are believed."""
-    low, high = SLOWEST * order, FASTEST * order
+    low, high = min(SLOWEST * order, ROUGH / 2), FASTEST * order
     if len(differences) < 2:
-        return ASSUMED * order
+        return assumed_rate(order)
     before, last = differences[-2:]
 
     def excess(rate: float) -> float:
@@ -68,11 +73,16 @@ def observed_rate(N: Array, differences: Array, order: float) -> float:
     return float(brentq(excess, low, high))
 
 
+def assumed_rate(order: float) -> float:
+    """Rate r that is taken where nothing is known of it."""
+    return ROUGH if order > HIGH else ASSUMED * order
+
+
 def next_growth(error: float, wanted: float, order: float, bounds: tuple[float, float]) -> float:
     """Growth of the number of cells with which an error is expected to fall to `wanted`."""
     if not math.isfinite(error):
         return bounds[0]
-    ratio = (error / wanted) ** (1.0 / (ASSUMED * order)) if wanted > 0.0 else math.inf
+    ratio = (error / wanted) ** (1.0 / assumed_rate(order)) if wanted > 0.0 else math.inf
     return min(max(ratio, bounds[0]), bounds[1])
 
 

@@ -13,8 +13,9 @@ from ..mesh import SizeField, Triangulation
 
 Array = NDArray[np.float64]
 
-#: Increase of the element size per distance, at most.
-GRADATION = 0.3
+#: Increase of the element size per distance, at most; of elements of high order it may be this
+#: multiple of the order, up to the steepest.
+GRADATION, OVER_ORDER, STEEPEST = 0.3, 0.125, 0.5
 #: Largest ratio of a new size to the old one; the least one is growth^-1.15. At the corners, where
 #: the error falls slowly, any ratio is asked for; a small one leaves Newton's method in the dark.
 LARGEST_RATIO, SHRINKAGE = 2.0, 1.15
@@ -31,7 +32,7 @@ def new_sizes(mesh: Triangulation, indicators: Array, growth: float, order: floa
 
     .. math:: h' = h\,(\tau/\eta)^{1/(p+1)}
 
-    Then sizes are lowered until they grow by no more than :data:`GRADATION` per distance.
+    Then sizes are lowered until they grow by no more than :func:`gradation` per distance.
 
     Parameters
     ----------
@@ -59,7 +60,7 @@ def new_sizes(mesh: Triangulation, indicators: Array, growth: float, order: floa
     used, index = np.unique(triangles, return_inverse=True)
     points, triangles = points[used], index.reshape(-1, 3)
     size = np.sqrt(areas / _EQUILATERAL)
-    grade = Gradation(points, triangles)
+    grade = Gradation(points, triangles, gradation(order))
     ratios = growth**-SHRINKAGE, LARGEST_RATIO
 
     def graded(log_tau: float) -> Array:
@@ -78,6 +79,11 @@ def new_sizes(mesh: Triangulation, indicators: Array, growth: float, order: floa
     if excess(low) <= 0.0:  # more cells than the ratios allow
         return SizeField(points, triangles, graded(low))
     return SizeField(points, triangles, graded(brentq(excess, low, high, xtol=1e-3)))
+
+
+def gradation(order: float) -> float:
+    """Increase of the element size per distance that suits elements of an order."""
+    return min(max(GRADATION, OVER_ORDER * order), STEEPEST)
 
 
 def count(areas: Array, sizes: Array) -> float:
@@ -124,12 +130,12 @@ class Gradation:
         self,
         points: Array,
         triangles: NDArray[np.int64],
-        gradation: float = GRADATION,
+        steepest: float = GRADATION,
     ) -> None:
         n = len(points)
         edges = triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
         edges = np.unique(np.sort(edges, axis=1), axis=0)
-        self._rise = gradation * np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1)
+        self._rise = steepest * np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1)
         self._edges = edges
         self._corners = triangles.ravel()
         self._cells_of = np.bincount(self._corners, minlength=n)

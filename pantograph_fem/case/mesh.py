@@ -24,8 +24,12 @@ CLAMP_SIZE_OVER_SIDE = 1 / 68
 #: These three, and those of the first of a series of meshes: coarse, as finer ones follow.
 DEFAULTS = (SIZE_OVER_SIDE, CORNER_SIZE_OVER_SIZE, CLAMP_SIZE_OVER_SIDE)
 FIRST_DEFAULTS = (1 / 6, 1 / 20, 1 / 34)
+#: Degree for which they are chosen. The first of a series is the coarser the higher its degree.
+DEGREE = 3
 #: Default growth of the element size per distance from a corner or a grip.
 GROWTH = 0.25
+#: That of the first of a series by its degree; elements of high degree may grow faster.
+FIRST_GROWTH = {4: 0.375, 5: 0.5, 6: 0.5}
 #: Smallest size at corners and grips, over the size inside; far beyond it gmsh fails.
 SMALLEST_RATIO = 1e-4
 
@@ -45,7 +49,8 @@ class Mesh(Part):
     grip_size
         Element size along the two grips, m; None: no refinement along them.
     growth
-        Increase of the element size per distance from a corner or a grip; 0.25 by default.
+        Increase of the element size per distance from a corner or a grip; 0.25 by default, and up
+        to 0.5 for the first mesh of a series of high degree.
     adapt
         Whether the mesh is refined where the solution needs it until the force or the energy at
         full load is accurate; the sizes are then those of the first mesh, coarser by default.
@@ -90,12 +95,17 @@ class Mesh(Part):
             raise problem_error(*(Problem(text, (key,)) for key in wrong))
         return self
 
-    def with_defaults(self, sheet: Sheet, grips: Grips) -> Mesh:
+    def with_defaults(self, sheet: Sheet, grips: Grips, degree: int) -> Mesh:
         """Fill in the sizes that are not given, and check that none exceeds that inside."""
         if self.file:
             return self
         side = min(sheet.width, sheet.height)
         over_side, over_size, clamp_over_side = FIRST_DEFAULTS if self.adapt else DEFAULTS
+        growth = FIRST_GROWTH.get(degree, GROWTH) if self.adapt else GROWTH
+        if self.adapt and degree > DEGREE:
+            over_side, clamp_over_side = (
+                share * degree / DEGREE for share in (over_side, clamp_over_side)
+            )
         size = self.size or over_side * side
         corner_size = self.corner_size or over_size * size
         grip_size = self.grip_size
@@ -118,6 +128,6 @@ class Mesh(Part):
                 "size": size,
                 "corner_size": corner_size,
                 "grip_size": grip_size,
-                "growth": self.growth or GROWTH,
+                "growth": self.growth or growth,
             }
         )

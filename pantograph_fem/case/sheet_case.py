@@ -19,9 +19,9 @@ class SheetCase(GrippedCase):
     """A pantographic sheet between two grips; its attributes are the sections of the file."""
 
     kind: Literal["sheet"] = "sheet"
-    # validated although a default, as its sizes depend on the sheet and the grips
-    mesh: Mesh = Field(default_factory=Mesh, validate_default=True)
     discretisation: Discretisation = Field(default_factory=Discretisation)
+    # validated although a default, as its sizes depend on what is above
+    mesh: Mesh = Field(default_factory=Mesh, validate_default=True)
     continuation: Continuation = Continuation()
     output: Output = Output()
     measurements: Measurements = Field(default_factory=dict)
@@ -36,8 +36,11 @@ class SheetCase(GrippedCase):
     @field_validator("mesh")
     @classmethod
     def _default_sizes(cls, mesh: Mesh, info: ValidationInfo) -> Mesh:
-        sheet, grips = info.data.get("sheet"), info.data.get("grips")
-        return mesh if sheet is None or grips is None else mesh.with_defaults(sheet, grips)
+        above = [info.data.get(name) for name in ("sheet", "grips", "discretisation")]
+        if None in above:
+            return mesh
+        sheet, grips, discretisation = above
+        return mesh.with_defaults(sheet, grips, discretisation.degree)
 
     @field_validator("output")
     @classmethod
