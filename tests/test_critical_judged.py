@@ -7,8 +7,8 @@ import pytest
 
 from pantograph_fem.case import case_from_dict
 from pantograph_fem.stress.checks import changes_are_located
+from pantograph_fem.stress.critical_loads import CriticalLoads
 from pantograph_fem.stress.evidence import Evidence
-from pantograph_fem.stress.expectation import CriticalLoads
 from pantograph_fem.study.process import Ended
 
 CASE = case_from_dict(

@@ -36,11 +36,12 @@ class SheetCase(GrippedCase):
     @field_validator("mesh")
     @classmethod
     def _default_sizes(cls, mesh: Mesh, info: ValidationInfo) -> Mesh:
-        above = [info.data.get(name) for name in ("sheet", "grips", "discretisation")]
-        if None in above:
+        sheet, grips, elements = (
+            info.data.get(name) for name in ("sheet", "grips", "discretisation")
+        )
+        if sheet is None or grips is None or elements is None:
             return mesh
-        sheet, grips, discretisation = above
-        return mesh.with_defaults(sheet, grips, discretisation.degree)
+        return mesh.with_defaults(sheet, grips, elements.degree)
 
     @field_validator("output")
     @classmethod

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 
-from .expectation import CriticalLoad, CriticalLoads, SameAs, Value, Without
+from .critical_loads import CriticalLoad, CriticalLoads
+from .expectation import SameAs, Value, Without
 from .hard_case import HardCase
 from .sheets import pulled
 

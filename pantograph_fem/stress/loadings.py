@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 
-from .expectation import CriticalLoad, Without
+from .critical_loads import CriticalLoad
+from .expectation import Without
 from .hard_case import HardCase
 from .sheets import (
     BIAS,

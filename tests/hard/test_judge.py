@@ -11,8 +11,9 @@ from pantograph_fem.errors import CaseError
 from pantograph_fem.results.progress import Progress
 from pantograph_fem.running import run
 from pantograph_fem.stress import run_suite, select
+from pantograph_fem.stress.critical_loads import CriticalLoad
 from pantograph_fem.stress.evidence import read_evidence
-from pantograph_fem.stress.expectation import CriticalLoad, NoLessThan, SameAs, Value, Without
+from pantograph_fem.stress.expectation import NoLessThan, SameAs, Value, Without
 from pantograph_fem.stress.hard_case import CASES, HardCase
 from pantograph_fem.stress.judge import judge
 from pantograph_fem.stress.meshes import shaken, slivers
