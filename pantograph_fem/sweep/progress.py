@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import sys
-from types import TracebackType
 from typing import TextIO
 
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
-from rich.progress import Progress as Bar
+from rich.progress import MofNCompleteColumn, TimeRemainingColumn
 
+from ..terminal import Terminal
 from .results import PointResult
 
 
-class SweepProgress:
+class SweepProgress(Terminal):
     """Report points that are over, as a context manager.
 
     Parameters
@@ -36,47 +33,20 @@ class SweepProgress:
         quiet: bool = False,
         stream: TextIO | None = None,
     ) -> None:
+        columns = MofNCompleteColumn(), TimeRemainingColumn()
+        super().__init__(title, columns, None, quiet=quiet, stream=stream)
         self._keys = keys
-        self._quiet = quiet
-        self._stream = stream or sys.stdout
         self.finished = self.total = self.failed = 0
-        self._bar: Bar | None = None
-        if not quiet and self._stream.isatty():
-            self._bar = Bar(
-                TextColumn("{task.description}", markup=False),
-                BarColumn(bar_width=None),
-                MofNCompleteColumn(),
-                TimeRemainingColumn(),
-                TextColumn("{task.fields[state]}", markup=False),
-                console=Console(file=self._stream),
-                expand=True,
-            )
-            self._task = self._bar.add_task(title, total=None, state="")
-
-    def __enter__(self) -> SweepProgress:
-        if self._bar:
-            self._bar.start()
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        if self._bar:
-            self._bar.stop()
 
     def start(self, total: int, before: int) -> None:
         """Show how many points there are to run, and how many were over before."""
         self.total = total
-        self._note(f"{total} to run, {before} run before")
-        if self._bar:
-            self._bar.update(self._task, total=total)
+        self.note(f"{total} to run, {before} run before")
+        self.show(total=total)
 
     def compiling(self) -> None:
         """Show that forms are compiled."""
-        self._note("compiling the forms")
+        self.note("compiling the forms")
 
     def over(self, result: PointResult) -> None:
         """Show a point that is over."""
@@ -85,21 +55,11 @@ class SweepProgress:
         values = zip(self._keys, result.point.values, strict=True)
         where = ", ".join(f"{key} = {_short(value)}" for key, value in values)
         text = f"{self.finished}/{self.total}  {where}: {result.status}"
-        if self._bar:
-            state = f"{self.failed} failed" if self.failed else ""
-            self._bar.update(self._task, completed=self.finished, state=state)
-            if not result.done:
-                self._note(text)
-        else:
-            self._note(f"{text}, {result.cpu_seconds:.1f} s CPU")
-
-    def _note(self, text: str) -> None:
-        if self._quiet:
-            return
-        if self._bar:
-            self._bar.console.print(text, markup=False, highlight=False)
-        else:
-            print(text, file=self._stream, flush=True)
+        self.show(f"{self.failed} failed" if self.failed else "", self.finished)
+        if not self.has_bar:
+            self.note(f"{text}, {result.cpu_seconds:.1f} s CPU")
+        elif not result.done:
+            self.note(text)
 
 
 def _short(value: object) -> str:
