@@ -1,5 +1,6 @@
 # make run    installs what is missing and runs the bias extension test of Fig. 7
-# make test   installs what is missing, checks the code and runs the tests
+# make test   installs what is missing, checks the code and runs the tests, the core on two processes
+# make core   the tests of the core, on PROCESSES=2 processes
 # make lint   style and types alone
 # make hard   runs the hard cases and puts their table into docs/hard_cases.md, in ten minutes
 # make docs   builds the reference of the Python interface into build/docs
@@ -7,7 +8,7 @@
 
 SHELL := /bin/bash
 .DELETE_ON_ERROR:
-.PHONY: run test lint hard docs figures packages clean
+.PHONY: run test core lint hard docs figures packages clean
 
 PYTHON := .venv/bin/python
 PACKAGES := $(shell sed 's/\#.*//' apt-packages.txt)
@@ -15,12 +16,22 @@ SUDO := $(shell [ $$(id -u) = 0 ] || echo sudo)
 # One thread each: the matrices are small, and MPI is how more cores are used.
 export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
+PROCESSES := 2
+# Open MPI, 4 or 5, for any user and on any number of cores.
+export OMPI_ALLOW_RUN_AS_ROOT := 1
+export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
+export OMPI_MCA_rmaps_base_oversubscribe := 1
+export PRTE_MCA_rmaps_default_mapping_policy := :oversubscribe
 
 run: .venv/installed
 	.venv/bin/pantograph run cases/a_bias_extension.toml
 
 test: lint
 	$(PYTHON) -m pytest
+	$(MAKE) --no-print-directory core
+
+core: .venv/installed
+	mpirun -n $(PROCESSES) $(PYTHON) -m pytest -p no:cacheprovider -m core
 
 lint: .venv/installed
 	$(PYTHON) -m ruff check .

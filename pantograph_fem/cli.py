@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import traceback
 from typing import Annotated
 
 import typer
@@ -10,6 +11,7 @@ import typer
 from . import __version__
 from .commands.check import check
 from .commands.compare import compare
+from .commands.ending import abort, alone
 from .commands.identify import identify
 from .commands.plot import plot
 from .commands.processes import rank
@@ -58,6 +60,9 @@ def main() -> None:
         # click's usage errors know how to show themselves
         show = getattr(error, "show", None)
         if show is None:
+            if alone():
+                traceback.print_exc()
+                abort(1)
             raise
         show()
         raise SystemExit(2) from None
@@ -66,6 +71,11 @@ def main() -> None:
 
 def _fail(message: str, code: int) -> None:
     # Under mpirun every rank comes here with the same error; one message is enough.
-    if rank() == 0:
+    lone = alone()
+    if lone:
+        message = f"Process {rank()} alone: {message}"
+    if rank() == 0 or lone:
         print(message, file=sys.stderr, flush=True)
+    if lone:
+        abort(code)
     raise SystemExit(code)

@@ -194,17 +194,18 @@ def owned_size(space: fem.FunctionSpace) -> int:
 
 def cell_dofs(space: fem.FunctionSpace) -> NDArray[np.int32]:
     """Block numbers of each local cell, shape (cells, dofs per cell)."""
-    return _rows(space.dofmap.list)
+    return _rows(space.dofmap.list, space.dofmap.dof_layout.num_dofs)
 
 
 def cell_vertices(domain: mesh.Mesh) -> NDArray[np.int32]:
     """Geometry nodes of each local cell, shape (cells, vertices)."""
-    return _rows(domain.geometry.dofmaps[0] if _NEW else domain.geometry.dofmap)
+    cells = domain.geometry.dofmaps[0] if _NEW else domain.geometry.dofmap
+    return _rows(cells, domain.topology.dim + 1)
 
 
-def _rows(cell_nodes: Any) -> NDArray[np.int32]:
-    if _OLD:  # an adjacency list, each cell having as many nodes
-        return cell_nodes.array.reshape(cell_nodes.num_nodes, -1)
+def _rows(cell_nodes: Any, width: int) -> NDArray[np.int32]:
+    if _OLD:  # an adjacency list, each cell having as many nodes; a process may have no cells
+        return cell_nodes.array.reshape(-1, width)
     return cell_nodes
 
 
@@ -238,23 +239,6 @@ def evaluate(
 ) -> NDArray[np.float64]:
     """Values of an expression in cells, shape (cells, points * components)."""
     return compiled.eval(cells) if _OLD else compiled.eval(domain, cells)
-
-
-def create_symmetric_matrix(a: Form) -> PETSc.Mat:
-    """Upper half of a matrix with the sparsity of a symmetric bilinear form.
-
-    Half of the places to look up: assembly takes half of the time, and the factorisation needs no
-    copy of a half.
-    """
-    full = fem.petsc.create_matrix(a)
-    fem.petsc.assemble_matrix(full, a)  # else the conversion drops places without a value
-    full.assemble()
-    full.setOption(PETSc.Mat.Option.SYMMETRIC, True)
-    half = full.convert(PETSc.Mat.Type.SBAIJ, PETSc.Mat())
-    half.setLGMap(*full.getLGMap())
-    half.setOption(PETSc.Mat.Option.IGNORE_LOWER_TRIANGULAR, True)
-    full.destroy()
-    return half
 
 
 def assemble_matrix(A: PETSc.Mat, a: Form, bcs: Sequence[Any]) -> None:

@@ -16,11 +16,11 @@ def at_root(comm: MPI.Comm, action: Callable[[], T]) -> T | None:
     An error raised there is raised on every rank, so that none waits for ever.
     """
     value: T | None = None
-    error: Exception | None = None
+    error: BaseException | None = None
     if comm.rank == 0:
         try:
             value = action()
-        except Exception as caught:
+        except BaseException as caught:
             error = caught
     error = comm.bcast(error, root=0)
     if error is not None:

@@ -5,7 +5,7 @@ import itertools
 import json
 import os
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +26,9 @@ os.environ.setdefault("OMPI_MCA_rmaps_base_oversubscribe", "1")
 os.environ.setdefault("PRTE_MCA_rmaps_default_mapping_policy", ":oversubscribe")
 
 # PETSc of a wheel finds the MPI that comes beside it once that is loaded.
-import mpi4py.MPI  # noqa: E402, F401
+from mpi4py import MPI  # noqa: E402
+
+pytest_plugins = ("tests.processes",)
 
 #: Two processes of the MPI that the interpreter has: a wheel brings its own.
 _BESIDE = Path(sys.executable).with_name("mpiexec")
@@ -46,6 +48,26 @@ COARSE = {
     "grips": {"top": {"translation": [0.0, 0.03]}},
     "mesh": {"size": 0.02, "corner_size": 0.01},
 }
+
+
+@pytest.fixture(scope="session")
+def tmp_path_factory(tmp_path_factory):
+    """Makes folders, also those of `tmp_path`, that are the same for all processes."""
+    from .processes import WORLD
+
+    make = tmp_path_factory.mktemp
+    tmp_path_factory.mktemp = lambda *args, **options: WORLD.bcast(make(*args, **options))
+    return tmp_path_factory
+
+
+def run(case, directory=None, **options):
+    """Run a case as the program does, and have its rows on every process."""
+    from pantograph_fem.running import run
+
+    from .processes import WORLD
+
+    result = run(case, directory, **options)
+    return replace(result, rows=WORLD.bcast(result.rows))
 
 
 def merged(base, changes):
@@ -72,15 +94,13 @@ def coarse_case():
 @pytest.fixture
 def coarse_path(coarse_case):
     """Follow the path of a variant; returns the equilibrium and its accepted steps."""
-    from mpi4py import MPI
-
     from pantograph_fem.sheet.simulation import SheetSimulation
     from pantograph_fem.solve.continuation import follow, start_at
     from pantograph_fem.solve.step_size import StepSettings
     from pantograph_fem.stopwatch import Stopwatch
 
     def path(stops=(1.0,), max_step=0.25, **changes):
-        simulation = SheetSimulation(coarse_case(**changes), MPI.COMM_SELF, Stopwatch())
+        simulation = SheetSimulation(coarse_case(**changes), MPI.COMM_WORLD, Stopwatch())
         settings = StepSettings(stops=stops, max_step=max_step)
         return simulation, list(follow(simulation.path, start_at(simulation.start), settings))
 
@@ -114,7 +134,6 @@ def solve(tmp_path_factory):
     """Run a variant of the coarse case with quadratic displacements, from case to results."""
     from pantograph_fem.case import case_from_dict
     from pantograph_fem.results.fields import read_fields
-    from pantograph_fem.running import run
 
     base = merged(
         COARSE,

@@ -24,7 +24,7 @@ def sheet(coarse_case):
     def make(size, corner_size=None, scheme="hinge", **changes):
         case = coarse_case(discretisation={"scheme": scheme, "degree": 3}, **changes)
         mesh = rectangle(W, H, size, corner_size or size)
-        return mesh, SheetSimulation(case, MPI.COMM_SELF, Stopwatch(), mesh)
+        return mesh, SheetSimulation(case, MPI.COMM_WORLD, Stopwatch(), mesh)
 
     return make
 
@@ -97,6 +97,7 @@ def test_symmetric_states_have_symmetric_indicators(sheet):
     np.testing.assert_allclose(eta[order], eta[mirrored], rtol=1e-6, atol=1e-9 * eta.max())
 
 
+@pytest.mark.core
 def test_values_at_points_of_another_mesh_are_exact(sheet):
     _, simulation = sheet(0.02, 0.004)
     space = simulation.equilibrium.discretisation.state.function_space
@@ -109,6 +110,7 @@ def test_values_at_points_of_another_mesh_are_exact(sheet):
     np.testing.assert_allclose(values, smooth(points.T).T, atol=1e-14)
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_a_quadratic_state_is_carried_over_exactly(sheet, scheme):
     still = {"grips": {"top": {"translation": [0.0, 0.0]}}}
@@ -124,6 +126,7 @@ def test_a_quadratic_state_is_carried_over_exactly(sheet, scheme):
     np.testing.assert_allclose(found, expected, atol=1e-10)
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_newton_goes_on_from_the_state_of_a_coarser_mesh(sheet, coarse_path, scheme):
     coarse, steps = coarse_path(

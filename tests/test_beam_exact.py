@@ -11,13 +11,14 @@ from pantograph_fem.beam.simulation import BeamSimulation
 from pantograph_fem.case import case_from_dict, load_case
 from pantograph_fem.errors import PathError
 from pantograph_fem.results.fields import read_fields
-from pantograph_fem.running import run
 from pantograph_fem.solve.continuation import follow, start_at
 from pantograph_fem.solve.step_size import StepSettings
 from pantograph_fem.stopwatch import Stopwatch
 
-from .conftest import merged
+from .conftest import merged, run
 from .exact_beam import cantilever_along_an_arc, cantilever_with_dead_load
+
+pytestmark = pytest.mark.core
 
 CASES = Path(__file__).parents[1] / "cases"
 K_E, K_B = 4.05e8, 7.59e5
@@ -151,7 +152,7 @@ def test_small_displacements_on_a_foundation_are_linear(tmp_path, name, directio
 def path_of(stops=(1.0,), **changes):
     """Accepted states of a path and the problem they solve."""
     case = case_from_dict(merged(BEAM, changes))
-    simulation = BeamSimulation(case, MPI.COMM_SELF, Stopwatch())
+    simulation = BeamSimulation(case, MPI.COMM_WORLD, Stopwatch())
     options = case.continuation
     settings = StepSettings(
         stops=stops, max_step=options.max_step, critical_step=options.critical_step

@@ -6,8 +6,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mpi4py import MPI
+from petsc4py import PETSc
 
 from dolfinx import fem
+from dolfinx.fem import petsc
 
 from pantograph_fem import dolfinx_api as api
 from pantograph_fem.case import case_from_dict
@@ -17,11 +19,14 @@ from pantograph_fem.sheet.build import build_domain, build_grips, discretise_she
 from pantograph_fem.sheet.grip import GripSupport
 
 from .conftest import COARSE, merged
+from .distributed import dot, largest, norm, own_blocks, rough
+
+pytestmark = pytest.mark.core
 
 
 def build(**changes):
     case = case_from_dict(merged(COARSE, changes))
-    domain = build_domain(case, MPI.COMM_SELF)
+    domain = build_domain(case, MPI.COMM_WORLD)
     discretisation = discretise_sheet(case, domain)
     supports = [GripSupport(grip, discretisation) for grip in build_grips(case, domain)]
     return ContinuumEquilibrium(discretisation, supports)
@@ -40,34 +45,28 @@ def sheet(request):
     )
 
 
-def components(equilibrium, x, name):
-    """View of one field of a state, shape (blocks, components)."""
-    return x[equilibrium.discretisation.field(name).dofs]
-
-
 def random_state(equilibrium, seed, size=0.05):
     """A state with stretches, shear and curvatures of a few per cent in typical sizes."""
-    rng = np.random.default_rng(seed)
-    x = size * rng.standard_normal(equilibrium.undeformed().shape)
-    sizes = equilibrium.typical_sizes.copy()
-    displacement = equilibrium.discretisation.field("displacement")
-    sizes[displacement.dofs.ravel()] = 0.005  # of the mesh size, or elements turn inside out
-    return x * sizes
+    x = equilibrium.typical_sizes.copy()
+    for number, field in enumerate(equilibrium.discretisation.fields):
+        dofs, places = own_blocks(equilibrium, field.name)
+        if field.name == "displacement":
+            x[dofs] = 0.005  # of the mesh size, or elements turn inside out
+        x[dofs] *= size * rough(places, dofs.shape[1], [seed, number], wavelength=0.01)
+    return x
 
 
 def moved(equilibrium, x, motion):
     """The state after a superposed rigid motion: χ → Rχ + c, F → RF, Λ → RΛ."""
     y = x.copy()
-    d = equilibrium.discretisation
     R = motion.rotation(1.0)
-    u = d.field("displacement")
-    X = u.coordinates
-    current = X + components(equilibrium, x, "displacement")
-    y[u.dofs] = current + motion.displacement(current, 1.0) - X
+    dofs, X = own_blocks(equilibrium, "displacement")
+    current = X + x[dofs]
+    y[dofs] = current + motion.displacement(current, 1.0) - X
     for name, reference in (("gradient", np.eye(2)), ("multiplier", np.zeros((2, 2)))):
-        if d.field(name) is None:
+        if equilibrium.discretisation.field(name) is None:
             continue
-        dofs = d.field(name).dofs
+        dofs, _ = own_blocks(equilibrium, name)
         F = reference + x[dofs].reshape(-1, 2, 2)
         y[dofs] = (R @ F - reference).reshape(-1, 4)
     return y
@@ -78,7 +77,7 @@ def potential(equilibrium, x):
     functional = equilibrium.discretisation.functional
     for support in equilibrium.supports:
         functional += sum(support.stored.values())
-    return fem.assemble_scalar(api.form(functional))
+    return MPI.COMM_WORLD.allreduce(fem.assemble_scalar(api.form(functional)))
 
 
 def free_residual(equilibrium, x):
@@ -106,7 +105,7 @@ def test_a_rigid_motion_stores_and_resists_nothing(free_sheet, motion):
     sheet = free_sheet
     x = moved(sheet, sheet.undeformed(), motion)
     assert sum(sheet.energies(x, 0.0).values()) < 1e-12
-    assert np.abs(free_residual(sheet, x)).max() < 1e-9
+    assert largest(free_residual(sheet, x)) < 1e-9
 
 
 @given(motions, st.integers(0, 2**32 - 1))
@@ -131,7 +130,7 @@ def test_residual_is_the_derivative_of_the_potential(sheet, sabotage, rate):
     """Off by 1 %, the remainder would be of first order: the test can tell."""
     x, v = random_state(sheet, 1), random_state(sheet, 2)
     v[sheet._owned_dofs] = 0.0
-    slope = sabotage * free_residual(sheet, x) @ v
+    slope = sabotage * dot(free_residual(sheet, x), v)
 
     def remainder(h):
         return abs(potential(sheet, x + h * v) - potential(sheet, x) - h * slope)
@@ -152,17 +151,45 @@ def test_tangent_is_the_derivative_of_the_residual(sheet, sabotage, rate):
     start = free_residual(sheet, x)
 
     def remainder(h):
-        return np.linalg.norm(free_residual(sheet, x + h * v) - start - h * slope)
+        return norm(free_residual(sheet, x + h * v) - start - h * slope)
 
     assert taylor_rate(remainder) == pytest.approx(rate, abs=0.1)
 
 
-def test_tangent_is_symmetric(sheet):
-    A = sheet.matrix()
-    sheet.tangent(random_state(sheet, 5), 0.0, A)
+def full_tangent(sheet, x):
+    """The tangent as it is assembled, both halves of it."""
+    sheet.load_state(x, 0.0)
+    A = petsc.assemble_matrix(sheet._tangent, bcs=sheet._bcs)
+    A.assemble()
+    return A
+
+
+def test_tangent_is_symmetric(free_sheet):
+    x = random_state(free_sheet, 5)
+    free_sheet.tangent(x, 0.0, free_sheet.matrix())  # where stresses are extrapolated from
+    A = full_tangent(free_sheet, x)
     difference = A.copy()
     difference.axpy(-1.0, A.copy().transpose())
     assert difference.norm() < 1e-12 * A.norm()
+
+
+def test_half_of_the_tangent_acts_as_the_whole(sheet):
+    """Whichever process has a row, and with a place for every entry, but no more."""
+    x = random_state(sheet, 5)
+    half = sheet.matrix()
+    sheet.tangent(x, 0.0, half)
+    full = full_tangent(sheet, x)
+    (v, one), other = half.createVecs(), half.createVecLeft()
+    v.array[:] = random_state(sheet, 6)
+    half.mult(v, one)
+    full.mult(v, other)
+    assert norm(one.array - other.array) < 1e-13 * norm(other.array)
+    info = half.getInfo(PETSc.Mat.InfoType.GLOBAL_SUM)
+    assert info["mallocs"] == 0
+    assert info["nz_allocated"] == info["nz_used"]
+    block = half.getBlockSize()
+    places = full.getInfo(PETSc.Mat.InfoType.GLOBAL_SUM)["nz_used"]
+    assert info["nz_used"] == (places + block * half.size[0]) / 2
 
 
 @pytest.mark.parametrize("hold", ["position", "clamp"])
@@ -178,8 +205,33 @@ def test_load_rate_is_the_tangent_of_the_path(coarse_path, sabotage, scheme, hol
     sizes = simulation.equilibrium.typical_sizes
     difference = (after.x - before.x) / 0.002 / sizes
     rate = sabotage * here.linearisation.rate / sizes
-    error = np.abs(difference - rate).max() / np.abs(rate).max()
+    error = largest(difference - rate) / largest(rate)
     assert (error < 1e-4) == (sabotage == 1.0)
+
+
+@pytest.mark.parametrize("hold", ["position", "clamp"])
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_a_shift_of_what_is_held_is_followed_along_the_tangent(coarse_path, scheme, hold):
+    """Held unknowns that are shifted change the other forces by minus what is lifted."""
+    simulation, steps = coarse_path(
+        grips={"top": {"hold": hold}},
+        discretisation={"scheme": scheme, "degree": 2},
+        material={"shear_exponent": 2.0},  # without a kink
+    )
+    equilibrium, x = simulation.equilibrium, steps[-1].x
+    equilibrium.tangent(x, 1.0, equilibrium.matrix())  # of which it is a part
+    dofs, places = own_blocks(equilibrium, "displacement")
+    shift, h = np.zeros_like(x), 1e-5
+    shift[dofs] = 1e-3 * rough(places, 2, seed=5, wavelength=0.05)
+    held = np.isin(np.arange(len(x)), equilibrium.held_dofs)
+    moved = np.where(held, shift, 0.0)
+    forces = equilibrium.matrix().createVecs()
+    for r, sign in zip(forces, (1, -1), strict=True):
+        equilibrium.residual(x + sign * h * moved, 1.0, r)
+    change = (forces[0].array - forces[1].array) / (2 * h)
+    lifted = equilibrium.lift(x, 1.0, shift)
+    error = largest(lifted - np.where(held, shift, -change))
+    assert error < 1e-5 * largest(np.where(held, 0.0, lifted))
 
 
 @pytest.mark.parametrize("hold", ["position", "clamp"])
@@ -229,16 +281,28 @@ def test_reactions_of_the_two_grips_balance(coarse_path, scheme, hold):
     assert torque == pytest.approx(0.0, abs=1e-6 * abs(top.moment))
 
 
+def dense(A):
+    """All entries on every process, column by column."""
+    unit, column = A.createVecs()
+    first, last = unit.getOwnershipRange()
+    columns = []
+    for i in range(A.size[0]):
+        unit.set(0.0)
+        if first <= i < last:
+            unit.array[i - first] = 1.0
+        A.mult(unit, column)
+        columns.append(np.concatenate(MPI.COMM_WORLD.allgather(column.array.copy())))
+    return np.array(columns)
+
+
 def test_inertia_is_that_of_the_dense_tangent(coarse_path):
     simulation, steps = coarse_path(mesh={"size": 0.034, "corner_size": 0.034})
     equilibrium = simulation.equilibrium
     A = equilibrium.matrix()
     last = steps[-1]
     equilibrium.tangent(last.x, last.load, A)
-    scale = equilibrium.typical_sizes
-    whole = A.convert("aij")  # from its upper half
-    dense = whole.getValues(range(A.size[0]), range(A.size[0])) * np.outer(scale, scale)
-    eigenvalues = np.linalg.eigvalsh(dense)
+    scale = np.concatenate(MPI.COMM_WORLD.allgather(equilibrium.typical_sizes))
+    eigenvalues = np.linalg.eigvalsh(dense(A) * np.outer(scale, scale))
     assert last.linearisation.negative_pivots == (eigenvalues < 0).sum()
     assert last.linearisation.stable
     assert last.linearisation.expected_negative_pivots == simulation.dofs["multiplier"]

@@ -1,13 +1,18 @@
 """Tangents of the hinge scheme extrapolate stresses: what that changes, and what it is for."""
 
+import json
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from pantograph_fem.case import load_case
-from pantograph_fem.running import run
 from pantograph_fem.solve.origin import Origin
+
+from .conftest import run
+from .distributed import own_blocks, rough
+
+pytestmark = pytest.mark.core
 
 ARC = Path(__file__).parents[1] / "cases" / "beam_arc.toml"
 
@@ -26,7 +31,9 @@ def test_extrapolated_stresses_are_those_of_the_state_to_second_order(coarse_pat
         discretisation={"scheme": "hinge", "degree": 2},
     )
     equilibrium = simulation.equilibrium
-    direction = np.random.default_rng(3).standard_normal(steps[0].x.shape) * 1e-3
+    dofs, places = own_blocks(equilibrium, "displacement")
+    direction = np.zeros_like(steps[0].x)
+    direction[dofs] = 1e-3 * rough(places, 2, seed=3, wavelength=0.01)
     direction[equilibrium._owned_dofs] = 0.0
     differences = []
     for size in (1e-2, 1e-3):
@@ -55,3 +62,18 @@ def test_finer_elements_take_no_more_tangents(tmp_path):
         rows = run(load_case(ARC, overrides), tmp_path / str(size), quiet=True).rows
         counts.append(sum(row.newton_iterations for row in rows) + len(rows))
     assert counts[1] < 2 * counts[0], counts
+
+
+def test_tiny_elements_at_the_corners_shorten_no_step(coarse_case, tmp_path):
+    """They are a million times as stiff as they are free to turn: predictions must fit exactly."""
+    for growth in (0.5, 1.0):
+        case = coarse_case(
+            grips={"top": {"translation": [0.0, 0.01], "rotation": 20.0}},
+            discretisation={"scheme": "hinge", "degree": 4},
+            mesh={"size": 0.03, "corner_size": 5e-5, "growth": growth},
+            output={"figures": False, "fields": "none"},
+        )
+        result = run(case, tmp_path / str(growth), quiet=True)
+        summary = json.loads((result.directory / "summary.json").read_text())
+        assert summary["cutbacks"] == 0
+        assert sum(row.newton_iterations for row in result.rows) <= 3 * len(result.rows)

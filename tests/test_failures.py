@@ -26,6 +26,7 @@ from pantograph_fem.solve.ladder import rescue
 from pantograph_fem.solve.predictor import PathPoint
 from pantograph_fem.solve.step_size import StepSettings, StepSize
 
+from .distributed import own_blocks
 from .stability_problems import Toy, Truss, falling, pitchfork
 
 REMEDIES = Remedies("a finer mesh (a smaller mesh.corner_size)", ("material.shear",))
@@ -134,6 +135,7 @@ def followed(path, arc=False, size=2, on_instability="follow", max_steps=400, **
     )
 
 
+@pytest.mark.core
 def test_a_path_that_has_taken_all_its_steps_says_so():
     found, report = end_of(followed(pitchfork().path(), arc=True, max_steps=7, max_step=0.1))
     assert found[-1].number == 7
@@ -356,22 +358,23 @@ def sheet(coarse_case):
         from pantograph_fem.sheet.simulation import SheetSimulation
         from pantograph_fem.stopwatch import Stopwatch
 
-        return SheetSimulation(coarse_case(**changes), MPI.COMM_SELF, Stopwatch())
+        return SheetSimulation(coarse_case(**changes), MPI.COMM_WORLD, Stopwatch())
 
     return make
 
 
 def displaced(simulation, motion):
     """The state with a displacement u(X), shape (n, 2) of both."""
-    field = simulation.equilibrium.discretisation.field("displacement")
+    dofs, places = own_blocks(simulation.equilibrium, "displacement")
     x = simulation.start
-    x[field.dofs] = motion(field.coordinates)
+    x[dofs] = motion(places)
     return x
 
 
 HINGE = {"discretisation": {"scheme": "hinge", "degree": 2}}
 
 
+@pytest.mark.core
 @pytest.mark.parametrize(
     ("stretch", "shear", "objection"),
     [
@@ -392,6 +395,7 @@ def test_folded_sheets_are_objected_to(sheet, stretch, shear, objection):
     assert bool(said) == bool(objection)
 
 
+@pytest.mark.core
 def test_an_objection_names_the_place(sheet):
     """Only near the middle of the left edge is the sheet turned over."""
     simulation = sheet(**HINGE)
@@ -406,6 +410,7 @@ def test_an_objection_names_the_place(sheet):
     assert abs(y - 0.1) < 0.02
 
 
+@pytest.mark.core
 def test_a_sheet_that_is_pressed_together_ends_in_a_fold_and_says_so(tmp_path, coarse_case):
     """The top grip is pushed through the bottom one: no sheet follows."""
     case = coarse_case(
@@ -464,6 +469,7 @@ def test_the_condition_of_a_matrix_that_is_nearly_singular_is_large():
     assert conditions[2] > 1e6
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("predictor", ["tangent", "none"])
 def test_a_single_long_step_is_rescued(sheet, predictor):
     """Half of the turn of case c at once, which Newton's method does not find by itself."""

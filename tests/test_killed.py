@@ -74,6 +74,7 @@ def test_killed_at_random_times(tmp_path: Path, whole: Path) -> None:
     assert_same(tmp_path, whole)
 
 
+@pytest.mark.core
 def test_a_full_disk_is_explained_and_the_run_goes_on_later(
     tmp_path: Path, whole: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

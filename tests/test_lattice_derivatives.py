@@ -184,3 +184,18 @@ def test_the_load_rate_is_the_derivative_along_the_path(problem):
     rate = equilibrium.load_rate(x, load)
     np.testing.assert_allclose(rate, expected, atol=1e-6 * np.abs(rate).max())
     assert np.abs(rate[~held]).max() > 0
+
+
+def test_a_shift_of_what_is_held_is_followed_along_the_tangent(problem):
+    """Held unknowns that are shifted change the other forces by minus what is lifted."""
+    equilibrium, size = problem
+    load, h = 0.7, 1e-5
+    x, _ = some_state(equilibrium, size, load)
+    shift = np.random.default_rng(11).uniform(-size, size, x.shape)
+    held = equilibrium.net.held.ravel()
+    moved = np.where(held, shift, 0.0)
+    change = residual(equilibrium, x + h * moved, load) - residual(equilibrium, x - h * moved, load)
+    expected = np.where(held, shift, -change / (2 * h))
+    lifted = equilibrium.lift(x, load, shift)
+    np.testing.assert_allclose(lifted, expected, atol=1e-6 * np.abs(lifted).max())
+    assert np.abs(lifted[~held]).max() > 0

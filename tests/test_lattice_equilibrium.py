@@ -1,13 +1,11 @@
 """Equilibria of chains and lattices: closed forms, balance, work, processes."""
 
 import math
-import os
-import re
-import subprocess
-import sys
 
 import numpy as np
 import pytest
+
+from mpi4py import MPI
 
 from pantograph_fem.lattice.chain import chain
 from pantograph_fem.lattice.cut import cut
@@ -17,8 +15,6 @@ from pantograph_fem.lattice.links import angle_between
 from pantograph_fem.physics.rigid_motion import RigidMotion
 from pantograph_fem.solve.newton import NewtonSolver
 from pantograph_fem.solve.newton_settings import NewtonSettings
-
-from .conftest import MPIRUN
 
 K_E, K_B, LENGTH, COUNT = 4.05e8, 7.59e5, 1.0, 20
 SPACING = LENGTH / COUNT
@@ -181,45 +177,28 @@ def test_a_symmetric_test_has_a_symmetric_answer():
             np.testing.assert_allclose(x[partner], x * sign + shift, atol=1e-8)
 
 
-_TWO = """
-import numpy as np
-from mpi4py import MPI
-from tests.test_lattice_equilibrium import lattice
-
-shared, alone = lattice(comm=MPI.COMM_WORLD), lattice()
-whole = alone.impose(np.random.default_rng(1).uniform(-1e-3, 1e-3, 2 * alone.net.size), 0.6)
-own = slice(2 * shared.owned.start, 2 * shared.owned.stop)
-x = whole[own]
-A, B = shared.matrix(), alone.matrix()
-(r, v), (s, w) = A.createVecs(), B.createVecs()
-shared.residual(x, 0.6, r)
-alone.residual(whole, 0.6, s)
-np.testing.assert_allclose(r.array, s.array[own], atol=1e-9 * abs(s.array).max())
-shared.tangent(x, 0.6, A)
-alone.tangent(whole, 0.6, B)
-w.array[:] = np.random.default_rng(2).standard_normal(w.size)
-v.array[:] = w.array[own]
-A.mult(v, r)
-B.mult(w, s)
-np.testing.assert_allclose(r.array, s.array[own], atol=1e-9 * abs(s.array).max())
-rate = alone.load_rate(whole, 0.6)
-np.testing.assert_allclose(shared.load_rate(x, 0.6), rate[own], atol=1e-9 * abs(rate).max())
-np.testing.assert_array_equal(shared.impose(x, 0.9), alone.impose(whole, 0.9)[own])
-assert shared.energies(x, 0.6) == alone.energies(whole, 0.6)
-assert shared.reactions(x, 0.6) == alone.reactions(whole, 0.6)
-print(f"rank {MPI.COMM_WORLD.rank} agrees on {x.size} of {whole.size}")
-"""
-
-
-@pytest.mark.slow
-def test_two_processes_compute_what_one_computes():
-    done = subprocess.run(
-        [*MPIRUN, sys.executable, "-c", _TWO],
-        env=dict(os.environ),
-        capture_output=True,
-        text=True,
-        timeout=120,
-    )
-    assert done.returncode == 0, done.stderr
-    # lines of two processes may end up in one
-    assert sorted(re.findall(r"rank \d agrees", done.stdout)) == ["rank 0 agrees", "rank 1 agrees"]
+@pytest.mark.core
+def test_processes_compute_together_what_one_computes():
+    shared, alone = lattice(comm=MPI.COMM_WORLD), lattice(comm=MPI.COMM_SELF)
+    size = 2 * alone.net.size
+    whole = alone.impose(np.random.default_rng(1).uniform(-1e-3, 1e-3, size), 0.6)
+    own = slice(2 * shared.owned.start, 2 * shared.owned.stop)
+    assert own.stop - own.start > 0
+    x = whole[own]
+    A, B = shared.matrix(), alone.matrix()
+    (r, v), (s, w) = A.createVecs(), B.createVecs()
+    shared.residual(x, 0.6, r)
+    alone.residual(whole, 0.6, s)
+    np.testing.assert_allclose(r.array, s.array[own], atol=1e-9 * abs(s.array).max())
+    shared.tangent(x, 0.6, A)
+    alone.tangent(whole, 0.6, B)
+    w.array[:] = np.random.default_rng(2).standard_normal(w.size)
+    v.array[:] = w.array[own]
+    A.mult(v, r)
+    B.mult(w, s)
+    np.testing.assert_allclose(r.array, s.array[own], atol=1e-9 * abs(s.array).max())
+    rate = alone.load_rate(whole, 0.6)
+    np.testing.assert_allclose(shared.load_rate(x, 0.6), rate[own], atol=1e-9 * abs(rate).max())
+    np.testing.assert_array_equal(shared.impose(x, 0.9), alone.impose(whole, 0.9)[own])
+    assert shared.energies(x, 0.6) == alone.energies(whole, 0.6)
+    assert shared.reactions(x, 0.6) == alone.reactions(whole, 0.6)

@@ -69,6 +69,7 @@ def test_rates_are_the_derivatives_of_the_readings(sabotage, order):
     assert np.log2(remainder(1e-2) / remainder(5e-3)) == pytest.approx(order, abs=0.1)
 
 
+@pytest.mark.core
 def test_measurements_are_columns_behind_those_of_every_table(solve):
     run = solve(measurements=MEASUREMENTS, output={"probes": [[0.02, 0.05]]})
     row = run.last.columns()

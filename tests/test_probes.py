@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+pytestmark = pytest.mark.core
+
 GRADIENT = np.array([[0.1, -0.2], [0.3, 0.05]])
 POINTS = [[0.013, 0.071], [0.034, 0.102], [0.061, 0.187], [0.0, 0.2]]
 
@@ -20,7 +22,7 @@ def test_probes_are_exact_for_a_linear_displacement(coarse_case, scheme, degree)
     case = coarse_case(
         discretisation={"scheme": scheme, "degree": degree}, output={"probes": POINTS}
     )
-    simulation = SheetSimulation(case, MPI.COMM_SELF, Stopwatch())
+    simulation = SheetSimulation(case, MPI.COMM_WORLD, Stopwatch())
     discretisation = simulation.equilibrium.discretisation
     field = discretisation.field("displacement")
     discretisation.state.x.array[field.dofs] = field.coordinates @ GRADIENT.T

@@ -9,9 +9,10 @@ from pantograph_fem.errors import CaseError, PathError
 from pantograph_fem.recorder import Recorder
 from pantograph_fem.results.fields import read_fields
 from pantograph_fem.results.history import read_history
-from pantograph_fem.running import run
 
-from .conftest import COARSE, merged
+from .conftest import COARSE, merged, run
+
+pytestmark = pytest.mark.core
 
 BASE = merged(
     COARSE,

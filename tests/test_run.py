@@ -14,9 +14,10 @@ from pantograph_fem.case import case_from_dict, load_case
 from pantograph_fem.errors import CaseError, PathError
 from pantograph_fem.results.fields import read_fields
 from pantograph_fem.results.history import read_history
-from pantograph_fem.running import run
 
-from .conftest import COARSE, merged
+from .conftest import COARSE, merged, run
+
+pytestmark = pytest.mark.core
 
 W, H = 0.068, 0.204
 TRANSLATION, ANGLE = np.array([0.01, 0.02]), 25.0
@@ -370,9 +371,9 @@ def test_a_mesh_file_is_found_again_from_the_resolved_case(tmp_path):
         ],
         cell_sets={"bottom": [[], [0]], "top": [[], [1]]},
     )
-    (tmp_path / "meshes").mkdir()
+    (tmp_path / "meshes").mkdir(exist_ok=True)
     meshio.write(tmp_path / "meshes" / "four.inp", mesh)
-    (tmp_path / "cases").mkdir()
+    (tmp_path / "cases").mkdir(exist_ok=True)
     text = (
         'name = "four"\n[sheet]\nwidth = 0.068\nheight = 0.204\n[material]\nstretch = 1e5\n'
         "bending = 1e-2\nshear = 1e2\n[grips.top]\ntranslation = [0.0, 0.01]\n"

@@ -1,7 +1,6 @@
 """Runs of beams, chains and lattices: what they leave, resumed and in parallel."""
 
 import json
-import os
 import subprocess
 import sys
 
@@ -15,9 +14,11 @@ from pantograph_fem.errors import PathError
 from pantograph_fem.plot import plot
 from pantograph_fem.results.fields import read_fields
 from pantograph_fem.results.history import header, read_history
-from pantograph_fem.running import run
 
-from .conftest import MPIRUN, merged
+from .conftest import merged, run
+from .processes import SEVERAL
+
+pytestmark = pytest.mark.core
 
 COMMON = {"continuation": {"stops": [0.5, 1.0]}, "output": {"figures": False}}
 BEAM = merged(
@@ -128,6 +129,7 @@ def test_other_programs_read_the_fields(results):
         assert cellwise["stretch"][0].shape == (len(cells[0].data),)
 
 
+@pytest.mark.skipif(SEVERAL, reason="each process would draw them")
 def test_figures_are_drawn_and_redrawn(results):
     case, directory = results
     names = {path.name for path in (directory / "figures").glob("*.png")}
@@ -170,29 +172,7 @@ def test_a_resumed_run_ends_with_the_same_history(tmp_path, kind):
         assert again[name][-1] == pytest.approx(last[name][-1], rel=1e-6, abs=1e-9)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("kind", KINDS)
-def test_two_processes_find_the_same(tmp_path, kind):
-    path = tmp_path / "case.toml"
-    path.write_text(case_to_toml(case_from_dict(KINDS[kind])))
-    command = [sys.executable, "-m", "pantograph_fem", "run", str(path), "--quiet"]
-    for name, launcher in (("1", []), ("2", MPIRUN)):
-        subprocess.run(
-            [*launcher, *command, "--output", str(tmp_path / name)],
-            # Without what Open MPI adds behind Python's back once a test has loaded it.
-            env=dict(os.environ),
-            check=True,
-            timeout=300,
-        )
-    one, two = (read_history(tmp_path / n / "history.csv") for n in "12")
-    for name in one:
-        if name != "newton_iterations":
-            scale = np.abs(one[name]).max() or 1.0
-            np.testing.assert_allclose(two[name], one[name], atol=1e-8 * scale)
-    first, second = (read_fields(tmp_path / n).fields(-1) for n in "12")
-    np.testing.assert_allclose(second["displacement"], first["displacement"], atol=1e-9)
-
-
+@pytest.mark.skipif(SEVERAL, reason="starts a process of its own")
 def test_a_lattice_needs_no_finite_elements(tmp_path):
     path = tmp_path / "case.toml"
     path.write_text(case_to_toml(case_from_dict(LATTICE)))

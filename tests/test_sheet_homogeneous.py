@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+pytestmark = pytest.mark.core
+
 W, H = 0.068, 0.204
 K1, K2 = 1.0e5, 2.5e5
 DELTA = 0.02

@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+pytestmark = pytest.mark.core
+
 W, H = 0.068, 0.204
 X_AXIS, Y_AXIS = 0, 1
 #: Line of symmetry that a mirror turns the sheet about: the coordinate that changes, its value.

@@ -13,12 +13,14 @@ from pantograph_fem.case import case_from_dict
 from pantograph_fem.results.fields import read_fields
 from pantograph_fem.results.history import read_history
 from pantograph_fem.results.progress import Progress
-from pantograph_fem.running import run
 from pantograph_fem.solve.continuation import start_at
 from pantograph_fem.stopwatch import Stopwatch
 
-from .conftest import COARSE, merged
+from .conftest import COARSE, merged, run
 from .exact_beam import cantilever, cantilever_with_dead_load
+from .processes import SEVERAL
+
+pytestmark = pytest.mark.core
 
 K_E, K_B = 4.05e8, 7.59e5
 
@@ -94,6 +96,7 @@ def test_a_perfect_column_is_followed_onto_its_buckled_branch(tmp_path, method):
         np.testing.assert_allclose(place, exact.place, atol=1e-6)
 
 
+@pytest.mark.skipif(SEVERAL, reason="long")
 @pytest.mark.parametrize("method", ["load", "arc_length"])
 def test_a_straight_column_passes_four_critical_loads_each_with_its_mode(tmp_path, method):
     """Stiff enough that the loads are some nine tenths of Euler's even in the fourth mode."""
@@ -138,7 +141,7 @@ def test_inertia_and_the_lowest_eigenvalue_agree_through_the_first_two_buckling_
             },
         )
     )
-    simulation = BeamSimulation(case, MPI.COMM_SELF, Stopwatch())
+    simulation = BeamSimulation(case, MPI.COMM_WORLD, Stopwatch())
     path, x = simulation.path, start_at(simulation.start).points[0].x
     first, second = critical_load(2.0), critical_load(2.0 / 3.0)
     for force in [*np.linspace(0.0, 1.3, 14)[1:] * first, 0.9999 * first, 1.0001 * first, second]:
@@ -323,6 +326,7 @@ def test_critical_points_found_before_an_interruption_are_kept_and_none_is_doubl
     np.testing.assert_allclose(loads, [point["load"] for point in on_and_on], rtol=1e-6)
 
 
+@pytest.mark.skipif(SEVERAL, reason="each process would write one")
 def test_a_checkpoint_of_an_earlier_version_is_taken_up(tmp_path, on_and_on):
     """It holds no critical points: those that come are found."""
     case = case_from_dict(ON_AND_ON)

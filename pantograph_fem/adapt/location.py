@@ -56,7 +56,7 @@ class Locator:
         """
         cells = np.zeros(len(points), dtype=np.int32)
         depths = np.full(len(points), -np.inf)
-        for number in _CANDIDATES:
+        for number in _CANDIDATES if self._tree.n else ():
             open_ = np.flatnonzero(depths < _INSIDE)
             if not len(open_):
                 break

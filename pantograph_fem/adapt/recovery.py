@@ -34,6 +34,7 @@ class Recovery:
     def __init__(self, domain: mesh.Mesh, expressions: Sequence[Expr]) -> None:
         """Compile the expressions, which must be scalars; a collective call."""
         self._domain = domain
+        self._components = len(expressions)
         space = api.functionspace(domain, api.lagrange(2, (len(expressions),), domain))
         self.mean = fem.Function(space)
         self._expression = api.expression(
@@ -50,7 +51,7 @@ class Recovery:
         The means go into :attr:`mean` as well, ghosts included. A collective call.
         """
         raw = api.evaluate(self._expression, self._domain, self._cells)
-        own = raw.reshape(*self._dofs.shape, -1)
+        own = raw.reshape(*self._dofs.shape, self._components)
         means = self._sums(own) / self._weights
         self.mean.x.array[:] = means.ravel()
         return own, means[self._dofs]

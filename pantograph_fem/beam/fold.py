@@ -49,8 +49,8 @@ class FoldCheck:
 
     def _gathered(self, rows: NDArray[np.float64]) -> NDArray[np.float64]:
         """Columns of all processes' rows, from left to right; of equal abscissae, element wise."""
-        elements = np.concatenate(self._domain.comm.allgather(rows.reshape(len(self._cells), -1)))
-        elements = elements.reshape(len(elements), -1, 3)
+        own = rows.reshape(len(self._cells), len(self._points), 3)
+        elements = np.concatenate(self._domain.comm.allgather(own))
         # The nodes of an element from left to right, and the elements by their middles.
         order = np.argsort(elements[:, :, 0], axis=1)
         elements = np.take_along_axis(elements, order[:, :, None], axis=1)

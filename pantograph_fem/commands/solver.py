@@ -20,8 +20,12 @@ def solver() -> Callable[..., RunResult]:
     # other's way.
     os.environ.setdefault("OMPI_MCA_ess_singleton_isolated", "1")
     # PETSc of a wheel finds the MPI that comes beside it once that is loaded.
-    import mpi4py.MPI  # noqa: F401
+    import mpi4py.MPI
     import petsc4py
+
+    from .ending import guard
+
+    guard(mpi4py.MPI.COMM_WORLD)
 
     # A closed pipe or an interrupt is no crash: no PETSc report of a segmentation fault.
     petsc4py.init(["pantograph", "-no_signal_handler"])

@@ -21,6 +21,7 @@ from ..solve.origin import Origin
 from ..stopwatch import Stopwatch
 from .softening import Softening
 from .support import Support
+from .symmetric_matrix import create_symmetric_matrix
 
 Array = NDArray[np.float64]
 
@@ -119,7 +120,8 @@ class ContinuumEquilibrium:
 
     def matrix(self) -> PETSc.Mat:
         """A matrix for the tangent, of which it holds the upper half."""
-        return api.create_symmetric_matrix(self._tangent)
+        with self._clock("assemble"):
+            return create_symmetric_matrix(self._tangent)
 
     def undeformed(self) -> Array:
         """The state of rest."""
@@ -161,9 +163,11 @@ class ContinuumEquilibrium:
             api.assemble_matrix(A, self._tangent, self._bcs)
 
     def load_rate(self, x: Array, load: float) -> Array:
-        """Right side whose solution with the tangent is dx/dload along the path."""
+        """Right side whose solution with the tangent is dx/dload along the path.
+
+        The tangent is that assembled last, with the stresses extrapolated there.
+        """
         with self._clock("assemble"):
-            self._extrapolate(Origin(x, np.zeros_like(x)))
             self.load_state(x, load)
             rate = np.zeros(self._owned)
             if self._pull is not None:
@@ -172,6 +176,17 @@ class ContinuumEquilibrium:
             rate += self._forces_of(lambda support: support.rates(load))
             rate[self._owned_dofs] = self._data.x.array[self._owned_dofs]
         return rate
+
+    def lift(self, x: Array, load: float, shift: Array) -> Array:
+        """Right side whose solution with the tangent follows a shift of the held dofs."""
+        with self._clock("assemble"):
+            self.load_state(x, load)
+            self._data.x.array[:] = 0.0
+            self._data.x.array[self._owned_dofs] = shift[self._owned_dofs]
+            self._data.x.scatter_forward()
+            forces = self._lifted()
+            forces[self._owned_dofs] = shift[self._owned_dofs]
+        return forces
 
     def energies(self, x: Array, load: float) -> dict[str, float]:
         """Stored energy of each effect, J."""
@@ -264,6 +279,10 @@ class ContinuumEquilibrium:
         self._data.x.array[:] = 0.0
         for support in self.supports:
             self._data.x.array[support.dofs] = displaced(support)
+        return self._lifted()
+
+    def _lifted(self) -> Array:
+        """Minus what it takes to hold the free dofs while the data move the held ones."""
         self._vector.array[:] = 0.0
         api.lift(self._vector, self._tangent, self._bcs)
         return self._vector.array[: self._owned].copy()

@@ -73,7 +73,7 @@ class FieldSampler:
     def sample(self) -> dict[str, Array] | None:
         """Fields of the discretisation's present state on rank 0, None elsewhere; collective."""
         raw = api.evaluate(self._expression, self._domain, self._cells)
-        values = raw.reshape(*self._dofs.shape, -1)
+        values = raw.reshape(*self._dofs.shape, 2 + len(self._names))
         gathered = self._gather(self._accumulate(values) / self._weights)
         if gathered is None:
             return None

@@ -26,7 +26,7 @@ def displacement_weights(discretisation: Discretisation, domain: mesh.Mesh) -> N
     sizes = cell_sizes(domain)
     sizes /= domain.comm.allreduce(float(sizes.sum()))
     shares = np.repeat(sizes / cells.shape[1], cells.shape[1])
-    by_node = sums.array.reshape(len(field.dofs), -1)
+    by_node = sums.array.reshape(field.dofs.shape)
     np.add.at(by_node, cells.ravel(), shares[:, None])
     api.scatter_reverse_add(sums)
     weights = np.zeros(api.local_size(discretisation.state.function_space))

@@ -158,6 +158,15 @@ class LatticeEquilibrium:
             free = self._own(pull) - self._rows.derivatives(blocks) @ held.ravel()
             return np.where(self._own_held, self._own(held), free)
 
+    def lift(self, x: Array, load: float, shift: Array) -> Array:
+        """Right side whose solution with the tangent follows a shift of the held unknowns."""
+        with self._clock("assemble"):
+            moved = self.gather(np.where(self._own_held, shift, 0.0))
+            couples = load * self._couples
+            blocks = self._part.blocks(self.gather(x), self.rotations(load), couples)
+            free = -(self._rows.derivatives(blocks) @ moved.ravel())
+            return np.where(self._own_held, shift, free)
+
     def objection(self, x: Array, load: float) -> str:
         """Nothing: springs resist whatever could be objected to."""
         return ""

@@ -42,16 +42,16 @@ class BorderedNewton:
         self._tolerance, self._most = settings.tolerance, settings.max_iterations
         self._policy = FactorReuse(settings.tolerance, settings.contraction, settings.near)
 
-    def solve(self, plane: Plane) -> Correction:
-        """Iterate from the point of the plane; a collective call."""
+    def solve(self, plane: Plane, guess: Array) -> Correction:
+        """Iterate from a guess near the point of the plane; a collective call."""
         try:
-            return self._solve(plane)
+            return self._solve(plane, guess)
         except PathError as error:  # a factorisation that failed
             return _failure(plane.load, plane.x, self._most, str(error), Cause.SINGULAR)
 
-    def _solve(self, plane: Plane) -> Correction:
+    def _solve(self, plane: Plane, guess: Array) -> Correction:
         load, origin = plane.load, plane.origin
-        x = self._problem.impose(plane.x, load)
+        x = self._problem.impose(guess, load)
         for iterations in range(1, self._most + 1):
             self._set_load(load)
             self._newton.factorise(x, origin)

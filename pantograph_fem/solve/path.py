@@ -28,6 +28,8 @@ from .problem import Problem
 #: Errors, in typical sizes, up to which an old factor serves a problem that extrapolates stresses.
 #: Farther off its steps leave strains that the next tangent would extrapolate.
 _NEAR = 1e-5
+#: Held unknowns that are less than this off, in typical sizes, are in place.
+_IN_PLACE = 1e-13
 
 #: By number; number 1 is that of the lowest eigenvalue.
 _Modes = dict[int, Mode | None]
@@ -62,6 +64,8 @@ class NewtonPath:
         self._always = {1} if eigenvalues else set()
         self._load = 0.0
         self._trusted: tuple[float, Array, Array] | None = None
+        self._factorised: tuple[float, Array] | None = None
+        self._at_hand = False  # the factor of that state
         self._matrix = problem.matrix()
         destroy_with(self, self._matrix)
         self._newton = NewtonSolver(
@@ -78,20 +82,24 @@ class NewtonPath:
     def correct(self, guess: Array, load: float, origin: Origin | None = None) -> Correction:
         """Newton's method from the guess, with the held unknowns put in place.
 
-        The guess is from `origin`; by default from the state that was linearised last.
+        The free ones follow these along the tangent that was linearised last. The guess is from
+        `origin`; by default from the state that was linearised last.
         """
         with self._clock("solve"):
-            return self._corrector.correct(guess, load, origin or self._origin(load))
+            placed = self._placed(guess, load)
+            return self._corrector.correct(placed, load, origin or self._origin(load))
 
     def correct_exactly(self, guess: Array, load: float) -> Correction:
         """As :meth:`correct`, with steps as long as makes the residual smallest."""
         with self._clock("solve"):
-            return self._corrector.correct(guess, load, self._origin(load), exactly=True)
+            placed = self._placed(guess, load)
+            return self._corrector.correct(placed, load, self._origin(load), exactly=True)
 
     def correct_softly(self, guess: Array, load: float, level: int) -> Correction:
         """As :meth:`correct`, by way of easier problems from that of a level down to this one."""
         with self._clock("solve"):
-            return self._corrector.correct_softly(guess, load, self._origin(load), level)
+            placed = self._placed(guess, load)
+            return self._corrector.correct_softly(placed, load, self._origin(load), level)
 
     @property
     def softest(self) -> int:
@@ -113,7 +121,8 @@ class NewtonPath:
     def correct_on_plane(self, plane: Plane) -> Correction:
         """Newton's method for the state and its load, from the point of the plane."""
         with self._clock("solve"):
-            return self._bordered.solve(plane)
+            placed = self._placed(plane.x, plane.load)
+            return self._bordered.solve(plane, placed)
 
     def linearise(self, x: Array, load: float) -> Linearisation:
         """Factorise the tangent at an accepted state: its inertia, and the path's direction.
@@ -141,9 +150,12 @@ class NewtonPath:
         self._load = load
         with self._clock("solve"):
             inertia = self._newton.factorise(x).inertia
-            x = x + self._newton.correction(x)
+            self._factorised, self._at_hand = (load, x), True
+            # Of the very state whose factor it is: small elements resist strain and yield to
+            # motion, so that the least difference of the two states would be magnified.
             force = self._problem.load_rate(x, load)
             rate = self._newton.back_substitute(force)
+            x = x + self._newton.correction(x)
             modes = {n: self._mode(n, inertia, force, rate) for n in sorted(numbers)}
         clean_up(self._matrix)
         self._trusted = (load, x, rate)
@@ -175,6 +187,28 @@ class NewtonPath:
 
     def _potential(self, x: Array) -> float:
         return self._problem.potential(x, self._load)
+
+    def _placed(self, guess: Array, load: float) -> Array:
+        """The guess with the held unknowns in place, and the free ones moved along with them.
+
+        What is held moves on curves, which no predictor follows exactly. Left alone at the edge of
+        what is held, small elements would be strained by all that is missing.
+        """
+        at_hand, self._at_hand = self._at_hand, False
+        placed = self._problem.impose(guess, load)
+        if self._factorised is None:
+            return placed
+        shift = placed - guess
+        sizes = self._problem.typical_sizes
+        largest = float(np.abs(shift / sizes).max(initial=0.0))
+        if self._comm.allreduce(largest, MPI.MAX) <= _IN_PLACE:
+            return placed
+        trusted, x = self._factorised
+        if not at_hand:
+            self._load = trusted
+            self._newton.factorise(x)
+        forces = self._problem.lift(x, trusted, shift)
+        return guess + self._newton.back_substitute(forces)
 
     def _origin(self, load: float) -> Origin | None:
         """The state that was linearised last, and the step along its tangent to a load."""

@@ -62,7 +62,13 @@ class Problem(Protocol):
         """
 
     def load_rate(self, x: Array, load: float) -> Array:
-        """Right side whose solution with the tangent is dx/dload along the path."""
+        """Right side whose solution with the tangent assembled last is dx/dload along the path."""
+
+    def lift(self, x: Array, load: float, shift: Array) -> Array:
+        """Right side whose solution with that tangent follows a shift of the held unknowns.
+
+        `shift` has the shape of x; what it has for free unknowns does not count.
+        """
 
     def objection(self, x: Array, load: float) -> str:
         """Why an equilibrium is not acceptable all the same; empty where it is."""

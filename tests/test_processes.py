@@ -1,0 +1,128 @@
+"""What several processes find together is what one finds alone."""
+
+import json
+
+import numpy as np
+import pytest
+from scipy.spatial import cKDTree
+
+from mpi4py import MPI
+
+from pantograph_fem import running
+from pantograph_fem.case import case_from_dict
+from pantograph_fem.results.fields import read_fields
+from pantograph_fem.results.history import read_history
+
+from .conftest import COARSE, merged
+from .processes import SEVERAL, WORLD
+from .test_adapt_run import EASY
+from .test_run_kinds import BEAM, CHAIN, LATTICE
+from .test_stability_cases import COLUMN, UPRIGHT, critical_load
+
+pytestmark = [
+    pytest.mark.core,
+    pytest.mark.skipif(not SEVERAL, reason="compares several processes with one"),
+]
+
+#: Pulled, pushed aside and turned, so that nothing vanishes by symmetry.
+SHEET = merged(
+    COARSE,
+    {
+        "grips": {"top": {"translation": [0.01, 0.03], "rotation": 10.0}},
+        "discretisation": {"degree": 2},
+        "measurements": {"w": {"kind": "width", "height": 0.1}},
+        "output": {"probes": [[0.034, 0.102], [0.0, 0.0]], "figures": False, "eigenvalues": True},
+    },
+)
+HINGE = {"discretisation": {"scheme": "hinge"}}
+CLAMPS = {
+    "grips": {"bottom": {"hold": "clamp"}, "top": {"hold": "clamp"}},
+    "mesh": {"grip_size": 0.01},
+}
+BUCKLED = merged(COLUMN, {"ends": {"right": {"force": [-1.5 * critical_load(2.0), 0.0]}}})
+#: Pushed together: it sways to a side.
+SWAYING = merged(UPRIGHT, {"grips": {"top": {"translation": [0.0, -0.005]}}})
+ARC = {"continuation": {"method": "arc_length"}}
+BRANCH = {"continuation": {"on_instability": "branch"}}
+CASES = {
+    "micromorphic": SHEET,
+    "clamps": merged(SHEET, CLAMPS),
+    "hinge": merged(SHEET, HINGE),
+    "clamped hinges": merged(merged(SHEET, HINGE), CLAMPS),
+    "without bending": merged(SHEET, {"material": {"bending": None}}),
+    "arc length": merged(SHEET, ARC),
+    "unstable": merged(SWAYING, HINGE),
+    "branch": merged(SWAYING, BRANCH),
+    "adapted": EASY,
+    "beam": BEAM,
+    "buckling beam": merged(merged(BUCKLED, BRANCH), ARC),
+    "chain": CHAIN,
+    "lattice": LATTICE,
+}
+#: Columns in which processes have to agree to the last digit.
+COUNTS = ("step", "negative_pivots", "expected_negative_pivots", "stable")
+#: Relative, of what a column and those like it reach; and of a load that is searched for.
+SAME, CRITICAL = 1e-9, 1e-6
+
+
+@pytest.fixture(params=CASES)
+def both(request, tmp_path):
+    """Folders of a case run by all processes and, in each of them, by that one alone."""
+    case = case_from_dict(CASES[request.param])
+    alone = tmp_path / f"alone_{WORLD.rank}"
+    running.run(case, tmp_path / "shared", quiet=True)
+    running.run(case, alone, quiet=True, comm=MPI.COMM_SELF)
+    return tmp_path / "shared", alone
+
+
+def assert_same(shared, alone, size, what):
+    np.testing.assert_allclose(shared, alone, rtol=0, atol=SAME * size, err_msg=what)
+
+
+def test_histories_and_fields_are_the_same(both):
+    summaries = [json.loads((folder / "summary.json").read_text()) for folder in both]
+    for name in ("status", "dofs", "cells", "cutbacks"):
+        assert summaries[0][name] == summaries[1][name], name
+    points = [summary.get("critical_points", []) for summary in summaries]
+    for one, other in zip(*points, strict=True):
+        assert one == other | {"load": pytest.approx(other["load"], rel=CRITICAL)}
+
+    shared, alone = (read_history(folder / "history.csv") for folder in both)
+    assert shared.keys() == alone.keys()
+    assert len(shared["load"]) > 2
+    common = ~np.isin(alone["step"], [point["step"] for point in points[1]])
+    for name, values in alone.items():
+        if name in COUNTS:
+            assert shared[name][common].tolist() == values[common].tolist(), name
+        elif name != "newton_iterations":
+            assert_same(shared[name][common], values[common], size_of(name, alone), name)
+    if (both[0] / "fields.xdmf").exists():
+        assert_same_fields(*map(read_fields, both))
+
+
+def size_of(column, history):
+    """What an error of a column is small against, though the column itself may vanish."""
+    force = np.hypot(history["force_x"], history["force_y"]).max()
+    kinds = {
+        "force": force,
+        "moment": force * 0.1,
+        "energy": history["energy"].max(),
+        "shear": 1.0,
+        "tip_angle": 1.0,
+    }
+    own = np.abs(history[column]).max()
+    return next((size for kind, size in kinds.items() if column.startswith(kind)), own)
+
+
+def assert_same_fields(shared, alone):
+    """In the last state, whatever the order of its nodes."""
+    assert len(shared.loads) == len(alone.loads)
+    distances, node = cKDTree(shared.grid.points).query(alone.grid.points)
+    assert distances.max() < 1e-12
+    assert sorted(node) == list(range(len(shared.grid.points)))
+    found, expected = shared.fields(-1), alone.fields(-1)
+    assert found.keys() == expected.keys()
+    for name, values in expected.items():
+        # the mode is known less well than the state
+        size = np.abs(values).max() * (1e3 if name == "mode" else 10)
+        assert_same(found[name][node], values, size, name)
