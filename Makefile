@@ -62,6 +62,10 @@ figures: .venv/installed
 		--mesh 0.025/0.001 --mesh 0.025/0.0005 --output results/study_high_degrees
 	cp results/study_high_degrees/work_precision.png \
 		docs/figures/a_bias_extension_high_degrees.png
+	for study in "b_shear 5" "d_compression_3 9"; do set -- $$study; \
+		.venv/bin/pantograph study cases/$$1.toml --quiet --scheme micromorphic --scheme hinge \
+			--degree 3 --degree 4 --set discretisation.quadrature_degree=$$2 && \
+		cp results/study_$$1/work_precision.png docs/figures/$$1_work_precision.png || exit; done
 	.venv/bin/pantograph study cases/c_rotation_45.toml --quiet --scheme micromorphic \
 		--scheme hinge --degree 3 --degree 4
 	cp results/study_c_rotation_45/work_precision.png docs/figures/c_rotation_45_work_precision.png

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import time
 import traceback
 from typing import Annotated
 
@@ -11,7 +12,7 @@ import typer
 from . import __version__
 from .commands.check import check
 from .commands.compare import compare
-from .commands.ending import abort, alone
+from .commands.ending import abort, alone, guarded
 from .commands.identify import identify
 from .commands.plot import plot
 from .commands.processes import rank
@@ -20,6 +21,9 @@ from .commands.stress import stress
 from .commands.study import study
 from .commands.sweep import sweep
 from .errors import PantographError
+
+#: Seconds that the first process has to say what is wrong before MPI has started.
+_HEAD_START = 5.0
 
 app = typer.Typer(
     name="pantograph",
@@ -78,4 +82,6 @@ def _fail(message: str, code: int) -> None:
         print(message, file=sys.stderr, flush=True)
     if lone:
         abort(code)
+    if rank() > 0 and not guarded():
+        time.sleep(_HEAD_START)  # mpirun ends the others, unheard, when one process has failed
     raise SystemExit(code)

@@ -17,6 +17,7 @@ from pantograph_fem.stopwatch import Stopwatch
 
 from .conftest import merged, run
 from .exact_beam import cantilever_along_an_arc, cantilever_with_dead_load
+from .processes import SEVERAL
 
 pytestmark = pytest.mark.core
 
@@ -253,6 +254,7 @@ def test_energy_and_force_scale_with_the_constants(tmp_path):
 RATES = {(2, 1): (1.8, 2.2), (3, 2): (3.8, 4.2), (4, 3): (5.7, 6.3)}
 
 
+@pytest.mark.skipif(SEVERAL, reason="long")
 @pytest.mark.parametrize(("degree", "auxiliary"), RATES)
 def test_energy_and_force_converge_at_the_expected_rate(tmp_path, degree, auxiliary):
     (exact,) = cantilever_along_an_arc(K_E, K_B, 1.0, [np.radians(60.0)])

@@ -11,6 +11,7 @@ from pantograph_fem.solve.origin import Origin
 
 from .conftest import run
 from .distributed import own_blocks, rough
+from .processes import SEVERAL
 
 pytestmark = pytest.mark.core
 
@@ -64,6 +65,7 @@ def test_finer_elements_take_no_more_tangents(tmp_path):
     assert counts[1] < 2 * counts[0], counts
 
 
+@pytest.mark.skipif(SEVERAL, reason="long")
 def test_tiny_elements_at_the_corners_shorten_no_step(coarse_case, tmp_path):
     """They are a million times as stiff as they are free to turn: predictions must fit exactly."""
     for growth in (0.5, 1.0):

@@ -25,6 +25,11 @@ def guard(comm: MPI.Comm) -> None:
         _guard = comm.Dup()  # apart from what the run sends
 
 
+def guarded() -> bool:
+    """Whether the processes are watched."""
+    return _guard is not None
+
+
 def alone() -> bool:
     """Whether other processes do not come to their end with this one."""
     if _guard is None:
