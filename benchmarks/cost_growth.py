@@ -10,19 +10,19 @@ docs/figures/cost_growth.png, and prints the exponents fitted in log-log.
 from __future__ import annotations
 
 import argparse
-import csv
 import json
 import os
 import resource
 import subprocess
 import sys
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from time import process_time
 
 import numpy as np
 from growth_figure import draw
 from programs import CASE, HERE, LEAN, ONE_THREAD
+from rows import write_rows
 
 from pantograph_fem.case import load_case
 
@@ -87,13 +87,7 @@ def main() -> None:
             if 2 * cost.dofs > 1.1 * arguments.most:
                 break
             size *= SHRINK
-    with (arguments.docs / "cost_growth.csv").open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(field.name for field in fields(Cost))
-        writer.writerows(
-            [f"{v:.6g}" if isinstance(v, float) else v for v in asdict(cost).values()]
-            for cost in costs
-        )
+    write_rows(arguments.docs / "cost_growth.csv", costs, digits=6)
     exponents = {
         (scheme, name): _exponent([cost for cost in costs if cost.scheme == scheme], name)
         for scheme in SCHEMES

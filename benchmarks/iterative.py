@@ -9,19 +9,18 @@ table.
 from __future__ import annotations
 
 import argparse
-import csv
 import json
 import os
 import subprocess
 import sys
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from time import process_time
 
-import numpy as np
 from cost_growth import COARSEST, LOAD, SHRINK
 from overlapping_schwarz import interpolation_of_linears, whole_matrix
 from programs import CASE, HERE, LEAN, ONE_THREAD
+from rows import write_rows
 
 from petsc4py import PETSc
 
@@ -99,13 +98,7 @@ def main() -> None:
         solves += [Solve(**json.loads(line)) for line in ended.stdout.splitlines()]
         print(ended.stdout, end="", flush=True)
         size *= SHRINK
-    with (arguments.docs / "iterative.csv").open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(field.name for field in fields(Solve))
-        for solve in solves:
-            writer.writerow(
-                [f"{v:.4g}" if isinstance(v, float) else v for v in asdict(solve).values()]
-            )
+    write_rows(arguments.docs / "iterative.csv", solves, digits=4)
     print("| unknowns | " + " | ".join(SOLVERS) + " |\n" + "|---" * (len(SOLVERS) + 1) + "|")
     for dofs in sorted({solve.dofs for solve in solves}):
         mine = {solve.solver: solve for solve in solves if solve.dofs == dofs}
@@ -115,10 +108,10 @@ def main() -> None:
 def _cell(solve: Solve | None) -> str:
     if solve is None:
         return ""
-    count = f" ({solve.iterations})" if solve.iterations > 1 else ""
-    return (
-        f"{solve.seconds:.3g} s{count}" if solve.iterations < MOST else f"> {solve.seconds:.3g} s"
-    )
+    seconds = f"{solve.seconds:.3g} s"
+    if solve.iterations >= MOST:
+        return f"> {seconds}"
+    return f"{seconds} ({solve.iterations})" if solve.iterations > 1 else seconds
 
 
 def _one(size: float) -> list[Solve]:
@@ -157,15 +150,14 @@ def _solve(name: str, matrix: PETSc.Mat, coarse: PETSc.Mat, right: PETSc.Vec) ->
     options["pc_asm_blocks"] = options["mg_levels_pc_asm_blocks"] = blocks
     ksp = PETSc.KSP().create(matrix.comm)
     ksp.setType(PETSc.KSP.Type.CG)
-    ksp.setNormType(PETSc.KSP.NormType.NATURAL)
+    direct = name == "direct"
+    ksp.setNormType(PETSc.KSP.NormType.NONE if direct else PETSc.KSP.NormType.NATURAL)
     ksp.setTolerances(rtol=TOLERANCE, max_it=MOST)
     ksp.setOperators(matrix)
     if SOLVERS[name]["pc_type"] == "mg":
         ksp.getPC().setType("mg")
         ksp.getPC().setMGLevels(2)
         ksp.getPC().setMGInterpolation(1, coarse)
-    if name == "direct":
-        ksp.setNormType(PETSc.KSP.NormType.NONE)
     ksp.setFromOptions()
     x, residual = right.duplicate(), right.duplicate()
     start = process_time()
@@ -174,10 +166,9 @@ def _solve(name: str, matrix: PETSc.Mat, coarse: PETSc.Mat, right: PETSc.Vec) ->
     seconds = process_time() - start
     matrix.mult(x, residual)
     residual.axpy(-1.0, right)
-    away = residual.norm() / right.norm()
-    iterations = ksp.its
+    solved = Solve(name, right.size, ksp.its, seconds, residual.norm() / right.norm())
     ksp.destroy()
-    return Solve(name, right.size, iterations, seconds, float(np.float64(away)))
+    return solved
 
 
 if __name__ == "__main__":

@@ -9,7 +9,6 @@ counts. Prints a table for docs/cluster.md and writes docs/scaling.csv.
 from __future__ import annotations
 
 import argparse
-import csv
 import json
 import os
 import shlex
@@ -17,11 +16,12 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterable
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
 from programs import CASE, HERE, LEAN, ONE_THREAD
+from rows import write_rows
 
 from pantograph_fem.case import load_case
 
@@ -86,13 +86,7 @@ def main() -> None:
                 series.append(_compared(best, series[0] if series else best))
                 print(series[-1], flush=True)
             runs += series
-    with (arguments.docs / "scaling.csv").open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(field.name for field in fields(Run))
-        writer.writerows(
-            [f"{v:.4g}" if isinstance(v, float) else v for v in asdict(run).values()]
-            for run in runs
-        )
+    write_rows(arguments.docs / "scaling.csv", runs, digits=4)
     print("\n".join(_table(runs)))
 
 

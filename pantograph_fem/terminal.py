@@ -14,6 +14,11 @@ from rich.progress import Progress as Bar
 class Terminal:
     """Shows how far something has come, as a context manager.
 
+    Attributes
+    ----------
+    first_state
+        What the bar says until it is told.
+
     Parameters
     ----------
     title
@@ -29,6 +34,8 @@ class Terminal:
     stream
         Where to write; standard output by default.
     """
+
+    first_state = ""
 
     def __init__(
         self,
@@ -52,7 +59,7 @@ class Terminal:
                 console=Console(file=self._stream),
                 expand=True,
             )
-            self._task = self._bar.add_task(title, total=total, state="")
+            self._task = self._bar.add_task(title, total=total, state=self.first_state)
 
     def __enter__(self) -> Self:
         if self._bar:

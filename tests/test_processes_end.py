@@ -43,19 +43,23 @@ ASSEMBLY = "pantograph_fem.continuum.equilibrium:ContinuumEquilibrium:residual"
 HISTORY = "pantograph_fem.results.history:HistoryWriter:write"
 
 
-def ended(folder, *arguments):
-    """The command on two processes, which has to end in seconds; forms are compiled before."""
-    (folder / "case.toml").write_text(tomli_w.dumps(SMALL))
-    command = ["run", "case.toml", "--quiet"]
+def on_two(*arguments, cwd, timeout=120):
+    """Python on two processes, which have to end in seconds."""
     return subprocess.run(
-        [*MPIRUN, sys.executable, "-c", DRIVER, *map(str, arguments), *command],
-        cwd=folder,
+        [*MPIRUN, sys.executable, *map(str, arguments)],
+        cwd=cwd,
         env=dict(os.environ),
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=timeout,
         check=False,
     )
+
+
+def ended(folder, *arguments):
+    """The command on two processes; forms are compiled before."""
+    (folder / "case.toml").write_text(tomli_w.dumps(SMALL))
+    return on_two("-c", DRIVER, *arguments, "run", "case.toml", "--quiet", cwd=folder)
 
 
 @pytest.mark.parametrize(
@@ -86,15 +90,7 @@ def test_without_an_error_both_come_to_the_end(tmp_path):
 def test_commands_that_start_processes_themselves_refuse_mpirun(tmp_path, command):
     (tmp_path / "case.toml").write_text(tomli_w.dumps(SMALL))
     arguments = [] if command == "stress" else ["case.toml"]
-    done = subprocess.run(
-        [*MPIRUN, sys.executable, "-m", "pantograph_fem", command, *arguments],
-        cwd=tmp_path,
-        env=dict(os.environ),
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
+    done = on_two("-m", "pantograph_fem", command, *arguments, cwd=tmp_path, timeout=60)
     assert done.returncode == 2
     assert done.stderr.count("leave mpirun out") == 1
     assert [path.name for path in tmp_path.iterdir()] == ["case.toml"]
@@ -113,24 +109,8 @@ def test_a_test_that_fails_in_one_process_fails_in_both(tmp_path):
         "def test_for_one_process(capsys):\n"
         "    assert False\n"
     )
-    done = subprocess.run(
-        [
-            *MPIRUN,
-            sys.executable,
-            "-m",
-            "pytest",
-            "-p",
-            "tests.processes",
-            "--color=no",
-            str(tmp_path),
-        ],
-        cwd=Path(__file__).parents[1],
-        env=dict(os.environ),
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-    )
+    options = ("-p", "tests.processes", "--color=no")
+    done = on_two("-m", "pytest", *options, tmp_path, cwd=Path(__file__).parents[1])
     assert done.returncode == 1
     assert done.stdout.count("1 failed, 1 passed, 1 deselected") == 1, done.stdout + done.stderr
     assert "process 1" in done.stdout

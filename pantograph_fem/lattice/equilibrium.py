@@ -146,8 +146,6 @@ class LatticeEquilibrium:
         """Right side whose solution with the tangent is dx/dload along the path."""
         with self._clock("assemble"):
             u, rotations = self.gather(x), self.rotations(load)
-            held = self._prescribed_rate(load)
-            blocks = self._part.blocks(u, rotations, load * self._couples)
             couples = self._couples.copy()
             walls = self._part.net.walls
             if walls is not None:
@@ -155,8 +153,8 @@ class LatticeEquilibrium:
                 rates = np.array([motion.angle for motion in self._motions.values()])
                 couples += self._part.rotational.on_links(stiffness * rates[walls.ends])
             pull = self._forces + self._part.couple_forces(u, couples)
-            free = self._own(pull) - self._rows.derivatives(blocks) @ held.ravel()
-            return np.where(self._own_held, self._own(held), free)
+            lifted = self.lift(x, load, self._own(self._prescribed_rate(load)))
+            return lifted + np.where(self._own_held, 0.0, self._own(pull))
 
     def lift(self, x: Array, load: float, shift: Array) -> Array:
         """Right side whose solution with the tangent follows a shift of the held unknowns."""

@@ -3,37 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import TextIO
 
 from ..terminal import Terminal
 from .history import HistoryRow
 
 
 class Progress(Terminal):
-    """Report accepted and rejected steps, as a context manager.
+    """Report accepted and rejected steps; the bar is full at full load."""
 
-    Parameters
-    ----------
-    title
-        Title of the case, shown beside the bar.
-    quiet
-        Show nothing.
-    plain
-        Write lines even to a terminal.
-    stream
-        Where to write; standard output by default.
-    """
-
-    def __init__(
-        self,
-        title: str = "",
-        *,
-        quiet: bool = False,
-        plain: bool = False,
-        stream: TextIO | None = None,
-    ) -> None:
-        super().__init__(title, quiet=quiet, plain=plain, stream=stream)
-        self.show("starting")
+    first_state = "starting"
 
     def accepted(self, row: HistoryRow, elapsed: float) -> None:
         """Show an accepted step; `elapsed` is the time in s since the run began."""

@@ -97,6 +97,9 @@ def no_branch(problem: ModalEquilibrium, point: CriticalPoint, upwards: bool) ->
 
     With `upwards` for a branch that rises, which along an arc it need not.
     """
+    missing, at, there = "no branch was found", "at", "there"
+    if upwards:
+        missing, at, there = "no stable branch was found to rise", "from", "from there"
     return _at_a_state(
         problem,
         (point.load, point.x),
@@ -105,14 +108,9 @@ def no_branch(problem: ModalEquilibrium, point: CriticalPoint, upwards: bool) ->
             point.load,
             0.0,
             Cause.NO_BRANCH,
-            "no stable branch was found to rise from the bifurcation"
-            if upwards
-            else "no branch was found at the bifurcation",
-            sentence=f"The path loses stability at load factor {point.load:.9g}, and no stable "
-            "branch was found to rise from there. Every state up to there is saved."
-            if upwards
-            else f"The path loses stability at load factor {point.load:.9g}, and no branch was "
-            "found there. Every state up to there is saved.",
+            f"{missing} {at} the bifurcation",
+            sentence=f"The path loses stability at load factor {point.load:.9g}, and {missing} "
+            f"{there}. Every state up to there is saved.",
         ),
         ', or continuation.method = "arc_length"' if upwards else "",
     )

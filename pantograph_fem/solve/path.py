@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -35,6 +35,16 @@ _IN_PLACE = 1e-13
 _Modes = dict[int, Mode | None]
 
 
+@dataclass(frozen=True, eq=False)
+class _Trusted:
+    """The state that was linearised last: as it was factorised, and as it was corrected then."""
+
+    load: float
+    factorised: Array
+    x: Array
+    rate: Array
+
+
 class NewtonPath:
     """Implements :class:`pantograph_fem.solve.equilibrium.ModalEquilibrium` by Newton's method."""
 
@@ -63,8 +73,7 @@ class NewtonPath:
         self._weights = weights
         self._always = {1} if eigenvalues else set()
         self._load = 0.0
-        self._trusted: tuple[float, Array, Array] | None = None
-        self._factorised: tuple[float, Array] | None = None
+        self._trusted: _Trusted | None = None
         self._at_hand = False  # the factor of that state
         self._matrix = problem.matrix()
         destroy_with(self, self._matrix)
@@ -147,10 +156,9 @@ class NewtonPath:
         return self._metric.inner(a, b)
 
     def _linearise(self, x: Array, load: float, numbers: set[int]) -> tuple[Linearisation, _Modes]:
-        self._load = load
+        self._load, self._at_hand, factorised = load, False, x
         with self._clock("solve"):
             inertia = self._newton.factorise(x).inertia
-            self._factorised, self._at_hand = (load, x), True
             # Of the very state whose factor it is: small elements resist strain and yield to
             # motion, so that the least difference of the two states would be magnified.
             force = self._problem.load_rate(x, load)
@@ -158,7 +166,7 @@ class NewtonPath:
             x = x + self._newton.correction(x)
             modes = {n: self._mode(n, inertia, force, rate) for n in sorted(numbers)}
         clean_up(self._matrix)
-        self._trusted = (load, x, rate)
+        self._trusted, self._at_hand = _Trusted(load, factorised, x, rate), True
         linearisation = Linearisation(
             x=x,
             rate=rate,
@@ -196,26 +204,26 @@ class NewtonPath:
         """
         at_hand, self._at_hand = self._at_hand, False
         placed = self._problem.impose(guess, load)
-        if self._factorised is None:
+        if self._trusted is None:
             return placed
         shift = placed - guess
         sizes = self._problem.typical_sizes
         largest = float(np.abs(shift / sizes).max(initial=0.0))
         if self._comm.allreduce(largest, MPI.MAX) <= _IN_PLACE:
             return placed
-        trusted, x = self._factorised
+        trusted = self._trusted
         if not at_hand:
-            self._load = trusted
-            self._newton.factorise(x)
-        forces = self._problem.lift(x, trusted, shift)
+            self._load = trusted.load
+            self._newton.factorise(trusted.factorised)
+        forces = self._problem.lift(trusted.factorised, trusted.load, shift)
         return guess + self._newton.back_substitute(forces)
 
     def _origin(self, load: float) -> Origin | None:
         """The state that was linearised last, and the step along its tangent to a load."""
         if self._trusted is None:
             return None
-        trusted, x, rate = self._trusted
-        return Origin(x, (load - trusted) * rate)
+        trusted = self._trusted
+        return Origin(trusted.x, (load - trusted.load) * trusted.rate)
 
     def _set_load(self, load: float) -> None:
         self._load = load

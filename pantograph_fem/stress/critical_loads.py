@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from .evidence import Evidence
 
@@ -34,11 +35,7 @@ class CriticalLoad:
         if not found.critical_points:
             return f"no critical point was found, of which there is one at {self.load:.8g}"
         first = found.critical_points[0]
-        if first["kind"] != self.kind:
-            return f"the first critical point is a {first['kind']}, not a {self.kind}"
-        if abs(first["load"] / self.load - 1) <= self.relative:
-            return ""
-        return f"the critical load is {first['load']:.8g}, not {self.load:.8g} ({self.source})"
+        return _off(first, self.load, self, "the first critical point", "the critical load")
 
 
 @dataclass(frozen=True)
@@ -68,10 +65,22 @@ class CriticalLoads:
         if len(points) != len(self.loads):
             return f"critical points found: {len(points)}, of which there are {len(self.loads)}"
         for number, (point, load) in enumerate(zip(points, self.loads, strict=True), 1):
-            if point["kind"] != self.kind:
-                return f"critical point {number} is a {point['kind']}, not a {self.kind}"
-            if abs(point["load"] / load - 1) > self.relative:
-                return (
-                    f"critical load {number} is {point['load']:.8g}, not {load:.8g} ({self.source})"
-                )
+            off = _off(point, load, self, f"critical point {number}", f"critical load {number}")
+            if off:
+                return off
         return ""
+
+
+def _off(
+    point: Mapping[str, Any],
+    load: float,
+    asked: CriticalLoad | CriticalLoads,
+    point_name: str,
+    load_name: str,
+) -> str:
+    """What is wrong with one critical point; empty where nothing is."""
+    if point["kind"] != asked.kind:
+        return f"{point_name} is a {point['kind']}, not a {asked.kind}"
+    if abs(point["load"] / load - 1) <= asked.relative:
+        return ""
+    return f"{load_name} is {point['load']:.8g}, not {load:.8g} ({asked.source})"
