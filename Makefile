@@ -1,5 +1,5 @@
 # make run    installs what is missing and runs the bias extension test of Fig. 7
-# make test   installs what is missing, checks the code and runs the tests
+# make test   installs what is missing, checks the code and runs the tests, the core on two processes
 # make core   the tests of the core, on PROCESSES=2 processes
 # make lint   style and types alone
 # make hard   runs the hard cases and puts their table into docs/hard_cases.md, in ten minutes
@@ -28,6 +28,7 @@ run: .venv/installed
 
 test: lint
 	$(PYTHON) -m pytest
+	$(MAKE) --no-print-directory core
 
 core: .venv/installed
 	mpirun -n $(PROCESSES) $(PYTHON) -m pytest -p no:cacheprovider -m core
