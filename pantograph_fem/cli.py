@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import select
 import sys
 import time
 import traceback
@@ -24,6 +25,10 @@ from .errors import PantographError
 
 #: Seconds that the first process has to say what is wrong before MPI has started.
 _HEAD_START = 5.0
+
+#: What Typer returns after Ctrl-C.
+_BY_INTERRUPT = 130
+_INTERRUPTED = "Interrupted. `pantograph run --resume` goes on from the last state."
 
 app = typer.Typer(
     name="pantograph",
@@ -58,8 +63,14 @@ def main() -> None:
         code = app(standalone_mode=False)
     except PantographError as error:
         _fail(str(error), error.exit_code)
+    except SystemExit as ended:
+        # Typer ends without a word where a pipe is broken. Who reads our output may go away; any
+        # other pipe is an error like others.
+        if isinstance(ended.__context__, BrokenPipeError) and not _reader_is_gone():
+            traceback.print_exception(ended.__context__)
+        raise
     except (typer.Abort, KeyboardInterrupt):
-        _fail("Interrupted. `pantograph run --resume` goes on from the last state.", 1)
+        _fail(_INTERRUPTED, 1)
     except Exception as error:
         # click's usage errors know how to show themselves
         show = getattr(error, "show", None)
@@ -70,7 +81,17 @@ def main() -> None:
             raise
         show()
         raise SystemExit(2) from None
+    if code == _BY_INTERRUPT:
+        _fail(_INTERRUPTED, 1)
     raise SystemExit(code or 0)
+
+
+def _reader_is_gone() -> bool:
+    """Whether what we print to is a pipe that nobody reads from any more."""
+    outputs = select.poll()
+    for descriptor in (1, 2):
+        outputs.register(descriptor, 0)
+    return any(events & select.POLLERR for _, events in outputs.poll(0))
 
 
 def _fail(message: str, code: int) -> None:

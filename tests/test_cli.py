@@ -4,6 +4,7 @@ import json
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -274,6 +275,36 @@ def test_a_reader_that_goes_away_is_no_crash(tmp_path):
         errors = process.stderr.read()
     assert "PETSC ERROR" not in errors
     assert "Traceback" not in errors
+
+
+def test_a_broken_pipe_that_is_not_the_reader_is_an_error():
+    program = (
+        "from pantograph_fem import cli\n"
+        "@cli.app.command()\n"
+        "def leak(): raise BrokenPipeError(32, 'of a helper')\n"
+        "cli.main()\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program, "leak"], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 1
+    assert "of a helper" in done.stderr
+
+
+def test_an_interrupt_says_how_to_go_on(tmp_path):
+    write_case(tmp_path, continuation={"max_step": 0.01}, output={"fields": "none"})
+    with subprocess.Popen(
+        [PANTOGRAPH, "run", "case.toml"],
+        cwd=tmp_path,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as process:
+        process.stdout.readline()
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate()
+    assert process.returncode == 1
+    assert "--resume" in errors
 
 
 @pytest.fixture(scope="module")
