@@ -11,6 +11,7 @@ import itertools
 import logging
 from collections.abc import Callable, Sequence
 from functools import wraps
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import basix
@@ -103,8 +104,7 @@ def _coordinate_element(dimension: int) -> Any:
     """
     if not _OLD:
         return _lagrange(1, (dimension,), _CELLS[dimension])
-    element = ufl.FiniteElement("Lagrange", _CELLS[dimension], 1, variant="equispaced")
-    return ufl.VectorElement(element, dim=dimension)
+    return _equispaced(1, dimension, _CELLS[dimension])
 
 
 def _keep_constants_in_order() -> None:
@@ -153,6 +153,21 @@ def _lagrange(degree: int, shape: tuple[int, ...], cell: str) -> Any:
     if len(shape) == 1:
         return ufl.VectorElement("Lagrange", cell, degree, dim=shape[0])
     return ufl.TensorElement("Lagrange", cell, degree, shape=shape)
+
+
+def equispaced_lagrange(degree: int, components: int, domain: mesh.Mesh) -> Any:
+    """Element of vectors with equispaced nodes, as VTK has them; else they crowd at corners."""
+    return _equispaced(degree, components, _CELLS[domain.topology.dim])
+
+
+def _equispaced(degree: int, components: int, cell: str) -> Any:
+    if _OLD:
+        element = ufl.FiniteElement("Lagrange", cell, degree, variant="equispaced")
+        return ufl.VectorElement(element, dim=components)
+    variant = basix.LagrangeVariant.equispaced
+    return basix.ufl.element(
+        "Lagrange", cell, degree, lagrange_variant=variant, shape=(components,)
+    )
 
 
 def piecewise_constant(domain: mesh.Mesh) -> Any:
@@ -239,6 +254,12 @@ def evaluate(
 ) -> NDArray[np.float64]:
     """Values of an expression in cells, shape (cells, points * components)."""
     return compiled.eval(cells) if _OLD else compiled.eval(domain, cells)
+
+
+def write_vtk(path: Path, function: fem.Function) -> None:
+    """Write a Lagrange function of any degree to a .pvd file and those that it lists."""
+    with io.VTKFile(function.function_space.mesh.comm, path, "w") as file:
+        file.write_function(function)
 
 
 def assemble_matrix(A: PETSc.Mat, a: Form, bcs: Sequence[Any]) -> None:

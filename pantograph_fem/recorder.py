@@ -18,6 +18,7 @@ from .checkpoint import Saved
 from .errors import CaseError, ResultsError
 from .parallel import at_root
 from .results.atomic import replace_text
+from .results.elements import FOLDER, LIST
 from .results.failure import FAILURE_FILE
 from .results.fields import FieldGrid
 from .results.fields_writer import FieldsWriter
@@ -25,7 +26,7 @@ from .results.history import HistoryRow, HistoryWriter
 from .results.progress import Progress
 from .results.report import REPORT_FILE, write_report
 from .results.summary import package_versions, write_summary
-from .simulation import Simulation
+from .simulation import OnElements, Simulation
 from .solve.continuation import Array, Step
 from .stopwatch import Stopwatch
 
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
 
     from .adapt.accuracy import Accuracy
     from .case import Case
+    from .continuum.element_files import ElementFiles
 
 #: Column of the lowest eigenvalue of the tangent, in typical energies.
 EIGENVALUE = "lowest_eigenvalue"
@@ -74,6 +76,7 @@ class Recorder:
         self._cutbacks = 0
         self._history: HistoryWriter | None = None
         self._fields: FieldsWriter | None = None
+        self._elements: ElementFiles | None = None
         self._kept_rows = resumed.rows if resumed else 0
         self._kept_states = resumed.states if resumed else 0
         self._states = self._kept_states
@@ -83,6 +86,9 @@ class Recorder:
         with self._clock("output"), self._explained("The first files"):
             grid = self._simulation.grid()
             at_root(self._comm, lambda: self._open(grid))
+            output, simulation = self._case.output, self._simulation
+            if output.elements and output.fields != "none" and isinstance(simulation, OnElements):
+                self._elements = simulation.element_files(self._directory, self._kept_states)
         self._progress.__enter__()
         return self
 
@@ -127,6 +133,8 @@ class Recorder:
                 self._note_critical(step)
 
             at_root(self._comm, write)
+            if self._elements is not None and keep:
+                self._elements.write(step.load)
             if step.critical is None:  # there the tangent is singular, and leads nowhere
                 # Last: if the run dies before this, it is taken up one state earlier.
                 checkpoint.save(self._directory, self._comm, self._fingerprint, before)
@@ -198,6 +206,8 @@ class Recorder:
         """Remove what an earlier run left and this one does not go on from."""
         stale = [self._directory / name for name in ("summary.json", FAILURE_FILE, REPORT_FILE)]
         stale += self._directory.glob("figures/*.png")
+        if not (self._case.output.elements and self._kept_states):
+            stale += [self._directory / LIST, *self._directory.glob(f"{FOLDER}/*")]
         if not self._kept_states:
             stale += [self._directory / "fields.xdmf", self._directory / "fields.h5"]
         if self._accuracy is None:
@@ -206,9 +216,9 @@ class Recorder:
             stale += [self._directory / checkpoint.NAME]
         for path in stale:
             path.unlink(missing_ok=True)
-        figures = self._directory / "figures"
-        if figures.is_dir() and not any(figures.iterdir()):
-            figures.rmdir()
+        for folder in (self._directory / "figures", self._directory / FOLDER):
+            if folder.is_dir() and not any(folder.iterdir()):
+                folder.rmdir()
 
     def _finish(self, status: str) -> None:
         if self._accuracy is not None and self.rows:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Protocol
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 from .case import BeamCase, ChainCase, LatticeCase, SheetCase
 from .results.fields import FieldGrid
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from mpi4py import MPI
 
     from .case import Case
+    from .continuum.element_files import ElementFiles
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +59,14 @@ class Simulation(Protocol):
 
         On rank 0, None elsewhere.
         """
+
+
+@runtime_checkable
+class OnElements(Protocol):
+    """A simulation whose displacement is a function on a mesh of finite elements."""
+
+    def element_files(self, directory: Path, kept: int) -> ElementFiles:
+        """A writer of the displacement on the elements; a collective call."""
 
 
 def build_simulation(case: Case, comm: MPI.Comm, clock: Stopwatch) -> Simulation:

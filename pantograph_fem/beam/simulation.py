@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from functools import partial
+from pathlib import Path
 
 import numpy as np
 
 from mpi4py import MPI
 
 from ..case import BeamCase
+from ..continuum.element_files import ElementFiles
 from ..continuum.equilibrium import ContinuumEquilibrium
 from ..continuum.probes import Probes
 from ..continuum.sampling import FieldSampler
@@ -41,6 +43,7 @@ class BeamSimulation:
             sampler = FieldSampler(discretisation, axis.mesh, beam_observables(discretisation))
             supports = build_supports(case, discretisation, axis)
             check = FoldCheck(discretisation, axis)
+        self._mesh = axis.mesh
         self._sampler = sampler
         nodes = sampler.grid()
         # of the nodes from left to right, on rank 0
@@ -74,6 +77,10 @@ class BeamSimulation:
             return None
         numbers = np.arange(len(self._nodes))
         return FieldGrid(self._nodes, np.column_stack([numbers[:-1], numbers[1:]]))
+
+    def element_files(self, directory: Path, kept: int) -> ElementFiles:
+        """A writer of the displacement on the elements; a collective call."""
+        return ElementFiles(self._equilibrium.discretisation, self._mesh, directory, kept)
 
     def displacement(self, x: Array, load: float) -> Array | None:
         """Displacement along the axis on rank 0, None elsewhere; a collective call."""

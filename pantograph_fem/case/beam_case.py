@@ -117,3 +117,9 @@ class ChainCase(_AxisCase):
             rule = f"be at most half of beam.length ({beam.length})"
             raise problem_error(Problem(not_allowed(chain.spacing, rule), ("spacing",)))
         return Chain(spacing=beam.length / round(beam.length / chain.spacing))
+
+    @field_validator("output")
+    @classmethod
+    def _no_elements(cls, output: Output) -> Output:
+        output.check_no_elements("chain")
+        return output

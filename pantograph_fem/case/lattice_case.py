@@ -71,4 +71,5 @@ class LatticeCase(GrippedCase):
         sheet = info.data.get("sheet")
         if sheet is not None:
             output.check_probes(sheet)
+        output.check_no_elements("lattice")
         return output

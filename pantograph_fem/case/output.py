@@ -30,6 +30,9 @@ class Output(Part):
         States whose fields are saved: at all accepted steps, at the stops, or none.
     eigenvalues
         Whether the lowest eigenvalue of the tangent and its mode are found at every state.
+    elements
+        Whether the displacement of these states is also written on the elements themselves, with
+        their degree.
     figures
         Whether figures are drawn.
     report
@@ -42,9 +45,16 @@ class Output(Part):
     probes: Annotated[tuple[Point, ...], BeforeValidator(_list)] = ()
     fields: Literal["all", "stops", "none"] = "all"
     eigenvalues: bool = False
+    elements: bool = False
     figures: bool = True
     report: bool = Field(default_factory=lambda known: known.get("figures", True))
     line_spacing: float = Field(default=0.0048, gt=0)
+
+    def check_no_elements(self, kind: str) -> None:
+        """Raise when elements are asked for of springs."""
+        if self.elements:
+            rule = f"be false: a {kind} is made of springs and has no elements"
+            raise problem_error(Problem(not_allowed(self.elements, rule), ("elements",)))
 
     def check_probes(self, sheet: Sheet) -> None:
         """Raise when a probe lies outside the rectangle."""

@@ -8,6 +8,7 @@ from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement, indent, parse, tostring
 
 from .atomic import replace_text
+from .times import Times
 
 Shape = tuple[int, ...]
 
@@ -39,10 +40,6 @@ class StateEntry:
     cell_paths: dict[str, str]
 
 
-#: Difference of two times that readers tell apart.
-_APART = 1e-12
-
-
 class XdmfIndex:
     """An XDMF 3 collection of states of one grid, in memory; `save` writes it.
 
@@ -52,7 +49,7 @@ class XdmfIndex:
     def __init__(self, points: Dataset, cells: Dataset) -> None:
         self._points = points
         self._cells = cells
-        self._times: set[float] = set()
+        self._times = Times()
         self._root = Element("Xdmf", Version="3.0")
         self._states = SubElement(
             SubElement(self._root, "Domain"),
@@ -69,7 +66,7 @@ class XdmfIndex:
         # Every state names the points and cells again rather than by XInclude, which readers
         # support unevenly; the arrays themselves are stored once.
         state = SubElement(self._states, "Grid", Name="state", GridType="Uniform")
-        SubElement(state, "Time", Value=repr(self._time(load)))
+        SubElement(state, "Time", Value=repr(self._times.of(load)))
         number, nodes = self._cells.shape
         shape = {**TOPOLOGY[nodes], "NumberOfElements": str(number)}
         topology = SubElement(state, "Topology", shape)
@@ -83,13 +80,6 @@ class XdmfIndex:
                     state, "Attribute", Name=name, AttributeType=kind, Center=centre
                 )
                 _add_item(attribute, dataset, "Float")
-
-    def _time(self, load: float) -> float:
-        """The load, or a time next to it if a state has that: of equal times readers show none."""
-        while load in self._times:
-            load += _APART
-        self._times.add(load)
-        return load
 
     def save(self, path: Path) -> None:
         """Write the index, replacing an earlier one in one step."""

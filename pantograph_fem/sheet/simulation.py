@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property, partial
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy as np
 from mpi4py import MPI
 
 from ..case import SheetCase
+from ..continuum.element_files import ElementFiles
 from ..continuum.equilibrium import ContinuumEquilibrium
 from ..continuum.probes import Probes
 from ..continuum.sampling import FieldSampler
@@ -102,6 +104,10 @@ class SheetSimulation:
         """Nodes of the fields on rank 0, None elsewhere; a collective call."""
         grid = self._sampler.grid()
         return None if grid is None else FieldGrid(*grid)
+
+    def element_files(self, directory: Path, kept: int) -> ElementFiles:
+        """A writer of the displacement on the elements; a collective call."""
+        return ElementFiles(self.equilibrium.discretisation, self._domain, directory, kept)
 
     def reaction(self, x: Array, load: float) -> Reaction:
         """What the top grip exerts; a collective call."""
