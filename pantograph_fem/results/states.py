@@ -19,7 +19,7 @@ class State(Mapping[str, Array]):
     """Fields of a saved state on the nodes of the output grid, by name; read when first used.
 
     ``state["displacement"]`` has shape (n, 2) and is in m, scalars as ``state["shear_angle"]``
-    have shape (n,); README.md names them all with their units.
+    have shape (n,); docs/paraview.md names them all with their units.
 
     Attributes
     ----------

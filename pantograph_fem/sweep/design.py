@@ -83,7 +83,7 @@ def _unit_points(study: SweepStudy) -> Array:
     except ImportError as error:
         raise CaseError(
             f'design = "{study.design}" needs SALib, which cannot be imported ({error}); '
-            "pip install 'pantograph_fem[sweep]' installs it"
+            "pip install '.[sweep]' installs it"
         ) from None
     problem = dict(unit_problem(study))
     if study.design == "morris":

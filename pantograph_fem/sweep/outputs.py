@@ -34,6 +34,8 @@ def choose_outputs(case: Any, outputs: Sequence[str], responses: Sequence[str]) 
     chosen = tuple(outputs) or tuple(dict.fromkeys((*_STANDARD, *parts, "stable", *responses)))
     allowed = dict.fromkeys([FORCE, *header(len(case.output.probes)), *parts])
     allowed.update(dict.fromkeys(() if is_planar else _TIP))
+    for name, measurement in getattr(case, "measurements", {}).items():
+        allowed.update(dict.fromkeys(measurement.columns(name)))
     if case.output.eigenvalues:
         allowed["lowest_eigenvalue"] = None
     rule = f"be one of {', '.join(allowed)}"
