@@ -127,9 +127,8 @@ def make_plan(case_file: Path, output: Path | None, wanted: Wanted) -> Plan:
     ]
     reference = None
     if wanted.with_reference and wanted.reference is None:
-        # of the scheme of the case if that takes part, and of the highest degree
-        scheme = Variant("", directory, case).scheme
-        best = max(matrix, key=lambda v: (v.scheme == scheme, v.degree or 0))
+        # of the highest degree, and of the hinge scheme if that takes part: a third of the unknowns
+        best = max(matrix, key=lambda v: (v.scheme == "hinge", v.degree or 0))
         chosen = combinations[matrix.index(best) // len(series)]
         finer = (*base, *chosen, *size_overrides(case, finer_than(series)))
         reference = placed.variant(load_case(case_file, finer), label="reference")
