@@ -12,14 +12,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from . import checkpoint
-from .adapt import MESH_FILE
 from .case import case_to_toml
 from .checkpoint import Saved
 from .errors import CaseError, ResultsError
+from .leftovers import remove_leftovers
 from .parallel import at_root
 from .results.atomic import replace_text
-from .results.elements import FOLDER, LIST
-from .results.failure import FAILURE_FILE
 from .results.fields import FieldGrid
 from .results.fields_writer import FieldsWriter
 from .results.history import HistoryRow, HistoryWriter
@@ -191,7 +189,13 @@ class Recorder:
             raise CaseError(
                 f"--output: {self._directory} cannot be made: {error.strerror}; give another"
             ) from None
-        self._remove_stale()
+        remove_leftovers(
+            self._directory,
+            kept_rows=self._kept_rows,
+            kept_states=self._kept_states,
+            elements=self._case.output.elements,
+            adapted=self._accuracy is not None,
+        )
         replace_text(self._directory / "case.resolved.toml", case_to_toml(self._case))
         self._history = HistoryWriter(
             self._directory / "history.csv",
@@ -201,24 +205,6 @@ class Recorder:
         )
         if self._case.output.fields != "none" and grid is not None:
             self._fields = FieldsWriter(self._directory, grid, self._kept_states)
-
-    def _remove_stale(self) -> None:
-        """Remove what an earlier run left and this one does not go on from."""
-        stale = [self._directory / name for name in ("summary.json", FAILURE_FILE, REPORT_FILE)]
-        stale += self._directory.glob("figures/*.png")
-        if not (self._case.output.elements and self._kept_states):
-            stale += [self._directory / LIST, *self._directory.glob(f"{FOLDER}/*")]
-        if not self._kept_states:
-            stale += [self._directory / "fields.xdmf", self._directory / "fields.h5"]
-        if self._accuracy is None:
-            stale += [self._directory / MESH_FILE]
-        if not self._kept_rows:
-            stale += [self._directory / checkpoint.NAME]
-        for path in stale:
-            path.unlink(missing_ok=True)
-        for folder in (self._directory / "figures", self._directory / FOLDER):
-            if folder.is_dir() and not any(folder.iterdir()):
-                folder.rmdir()
 
     def _finish(self, status: str) -> None:
         if self._accuracy is not None and self.rows:

@@ -159,7 +159,7 @@ def test_tangent_is_the_derivative_of_the_residual(sheet, sabotage, rate):
 def full_tangent(sheet, x):
     """The tangent as it is assembled, both halves of it."""
     sheet.load_state(x, 0.0)
-    A = petsc.assemble_matrix(sheet._tangent, bcs=sheet._bcs)
+    A = petsc.assemble_matrix(sheet._forms.tangent, bcs=sheet._bcs)
     A.assemble()
     return A
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
-import ufl
 from numpy.typing import NDArray
 
 from mpi4py import MPI
@@ -19,6 +18,7 @@ from ..schemes import Discretisation
 from ..solve.failure import Remedies
 from ..solve.origin import Origin
 from ..stopwatch import Stopwatch
+from .forms import EquilibriumForms
 from .softening import Softening
 from .support import Support
 from .symmetric_matrix import create_symmetric_matrix
@@ -56,37 +56,13 @@ class ContinuumEquilibrium:
         self._owned = api.owned_size(space)
         self._comm = space.mesh.comm
         with self._clock("compile"):
-            self._compile()
+            self._forms = EquilibriumForms(discretisation, supports, self.has_minima)
         dofs = np.concatenate([support.dofs for support in supports])
         self._owned_dofs = np.unique(dofs[dofs < self._owned])
         self._data = fem.Function(space)
         blocks = dofs if space.dofmap.index_map_bs == 1 else dofs[::2] // 2
         self._bcs = [fem.dirichletbc(self._data, np.unique(blocks).astype(np.int32))]
         self._vector = api.create_vector(space)
-
-    def _compile(self) -> None:
-        d = self.discretisation
-        functional = d.functional
-        energies = dict(d.stored)
-        for support in self.supports:
-            for name, term in support.stored.items():
-                functional += term
-                energies[name] += term
-            if support.potential is not None:
-                functional += support.potential
-        self._potential = api.form(functional) if self.has_minima else None
-        residual = ufl.derivative(functional, self._state)
-        self._residual = api.form(residual)
-        space = self._state.function_space
-        self._origin, self._step = fem.Function(space), fem.Function(space)
-        tangent = ufl.derivative(residual, self._state)
-        self._stiff = (*d.stiff, *(part for support in self.supports for part in support.stiff))
-        for part in self._stiff:
-            tangent += part.correction(self._state, self._origin, self._step)
-        self._tangent = api.form(tangent)
-        self._energies = {name: api.form(energy) for name, energy in energies.items()}
-        pulls = [support.pull for support in self.supports if support.pull is not None]
-        self._pull = api.form(ufl.derivative(sum(pulls), self._state)) if pulls else None
 
     @property
     def held_dofs(self) -> NDArray[np.int32]:
@@ -116,12 +92,12 @@ class ContinuumEquilibrium:
     @property
     def extrapolates(self) -> bool:
         """Whether there are stresses to extrapolate."""
-        return bool(self._stiff)
+        return self._forms.extrapolates
 
     def matrix(self) -> PETSc.Mat:
         """A matrix for the tangent, of which it holds the upper half."""
         with self._clock("assemble"):
-            return create_symmetric_matrix(self._tangent)
+            return create_symmetric_matrix(self._forms.tangent)
 
     def undeformed(self) -> Array:
         """The state of rest."""
@@ -139,15 +115,15 @@ class ContinuumEquilibrium:
         """The functional of which an equilibrium is a stationary point, J."""
         with self._clock("assemble"):
             self.load_state(x, load)
-            assert self._potential is not None  # it has minima
-            potential = fem.assemble_scalar(self._potential)
+            assert self._forms.potential is not None  # it has minima
+            potential = fem.assemble_scalar(self._forms.potential)
             return self._comm.allreduce(potential, MPI.SUM)
 
     def residual(self, x: Array, load: float, r: PETSc.Vec) -> None:
         """Out-of-balance forces; zero at the held dofs, whose values x must already have."""
         with self._clock("assemble"):
             self.load_state(x, load)
-            api.assemble_vector(self._vector, self._residual)
+            api.assemble_vector(self._vector, self._forms.residual)
             r.array[:] = self._vector.array[: self._owned]
             r.array[self._owned_dofs] = 0.0
 
@@ -158,9 +134,9 @@ class ContinuumEquilibrium:
         :mod:`pantograph_fem.schemes.stiff`.
         """
         with self._clock("assemble"):
-            self._extrapolate(origin or Origin(x, np.zeros_like(x)))
+            self._forms.extrapolate_from(origin or Origin(x, np.zeros_like(x)))
             self.load_state(x, load)
-            api.assemble_matrix(A, self._tangent, self._bcs)
+            api.assemble_matrix(A, self._forms.tangent, self._bcs)
 
     def load_rate(self, x: Array, load: float) -> Array:
         """Right side whose solution with the tangent is dx/dload along the path.
@@ -170,8 +146,8 @@ class ContinuumEquilibrium:
         with self._clock("assemble"):
             self.load_state(x, load)
             rate = np.zeros(self._owned)
-            if self._pull is not None:
-                api.assemble_vector(self._vector, self._pull)
+            if self._forms.pull is not None:
+                api.assemble_vector(self._vector, self._forms.pull)
                 rate[:] = self._vector.array[: self._owned]
             rate += self._forces_of(lambda support: support.rates(load))
             rate[self._owned_dofs] = self._data.x.array[self._owned_dofs]
@@ -193,7 +169,7 @@ class ContinuumEquilibrium:
         self.load_state(x, load)
         return {
             name: self._comm.allreduce(fem.assemble_scalar(form), MPI.SUM)
-            for name, form in self._energies.items()
+            for name, form in self._forms.energies.items()
         }
 
     def reactions(self, x: Array, load: float) -> list[Reaction]:
@@ -214,7 +190,7 @@ class ContinuumEquilibrium:
     def forces(self, x: Array, load: float) -> Array:
         """Gradient of the functional; at held dofs, what the supports exert there."""
         self.load_state(x, load)
-        api.assemble_vector(self._vector, self._residual)
+        api.assemble_vector(self._vector, self._forms.residual)
         return self._vector.array[: self._owned].copy()
 
     def work(self, support: Support, virtual: Array, forces: Array) -> float:
@@ -225,7 +201,7 @@ class ContinuumEquilibrium:
     def work_rate(self, x: Array, load: float, support: Support, virtual: Array) -> Array:
         """Derivative of that work with respect to the free unknowns; zero at the held dofs."""
         with self._clock("assemble"):
-            self._extrapolate(Origin(x, np.zeros_like(x)))
+            self._forms.extrapolate_from(Origin(x, np.zeros_like(x)))
             self.load_state(x, load)
             rate = -self._forces_of(lambda one: virtual if one is support else 0.0)
             rate[self._owned_dofs] = 0.0
@@ -267,13 +243,6 @@ class ContinuumEquilibrium:
         for support in self.supports:
             support.move(load)
 
-    def _extrapolate(self, origin: Origin) -> None:
-        if not self.extrapolates:
-            return
-        for function, values in ((self._origin, origin.x), (self._step, origin.step)):
-            function.x.array[: self._owned] = values
-            function.x.scatter_forward()
-
     def _forces_of(self, displaced: Callable[[Support], Array | float]) -> Array:
         """Minus what it takes to hold the free dofs while the supports' dofs are displaced."""
         self._data.x.array[:] = 0.0
@@ -284,5 +253,5 @@ class ContinuumEquilibrium:
     def _lifted(self) -> Array:
         """Minus what it takes to hold the free dofs while the data move the held ones."""
         self._vector.array[:] = 0.0
-        api.lift(self._vector, self._tangent, self._bcs)
+        api.lift(self._vector, self._forms.tangent, self._bcs)
         return self._vector.array[: self._owned].copy()
