@@ -103,11 +103,13 @@ def test_histories_and_fields_are_the_same(both):
 def size_of(column, history):
     """What an error of a column is small against, though the column itself may vanish."""
     force = np.hypot(history["force_x"], history["force_y"]).max()
+    probes = [np.abs(values).max() for name, values in history.items() if name.startswith("probe")]
     kinds = {
         "force": force,
         "moment": force * 0.1,
         "energy": history["energy"].max(),
         "shear": 1.0,
+        "probe": max(probes, default=0.0),  # one of them is held
         "tip_angle": 1.0,
     }
     own = np.abs(history[column]).max()

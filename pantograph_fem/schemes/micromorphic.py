@@ -33,6 +33,7 @@ from .. import dolfinx_api as api
 from ..physics.energy import FibreEnergy
 from .discretisation import Discretisation, Scales, integration
 from .field import fields_of
+from .stiff import stretching
 
 #: c of the augmentation. With 1 to 20 the buckling load of upright fibres is exact on any mesh, and
 #: the force of the bias test changes by less than 1e-4; with 0 it is missed by up to 70 %.
@@ -81,7 +82,7 @@ def micromorphic(
         ),
         functional=(sum(densities.values()) + ufl.inner(Lambda, gap)) * dx,
         stored=stored,
-        stiff=(),  # stresses extrapolate by themselves where there is a multiplier
+        stiff=tuple(stretching(energy, F, dx)),
         energy=energy,
         densities=densities,
         displacement=u,

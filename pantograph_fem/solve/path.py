@@ -27,7 +27,7 @@ from .problem import Problem
 
 #: Errors, in typical sizes, up to which an old factor serves a problem that extrapolates stresses.
 #: Farther off its steps leave strains that the next tangent would extrapolate.
-_NEAR = 1e-5
+_NEAR = 1e-3
 #: Held unknowns that are less than this off, in typical sizes, are in place.
 _IN_PLACE = 1e-13
 
