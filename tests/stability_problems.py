@@ -19,7 +19,7 @@ class Toy:
     """Implements Problem for a potential given by its gradient and second derivatives."""
 
     has_minima = False
-    extrapolates = False
+    near = 1e-2
 
     def __init__(self, size, gradient, hessian, pull, multipliers=0):
         self.gradient, self.hessian, self.pull = gradient, hessian, pull

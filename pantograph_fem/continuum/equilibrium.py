@@ -90,9 +90,9 @@ class ContinuumEquilibrium:
         return self.discretisation.multiplier_dofs == 0
 
     @property
-    def extrapolates(self) -> bool:
-        """Whether there are stresses to extrapolate."""
-        return self._forms.extrapolates
+    def near(self) -> float:
+        """Errors, in typical sizes, up to which the factor of an old tangent serves."""
+        return self.discretisation.near
 
     def matrix(self) -> PETSc.Mat:
         """A matrix for the tangent, of which it holds the upper half."""

@@ -27,11 +27,14 @@ class Scales:
         Largest stiffness, N/m of a sheet or N of a beam.
     dimension
         Dimension of the body: 2 for a sheet, 1 for a beam.
+    softness
+        Stiffness of what resists where fibres do not stretch, over that of their stretch.
     """
 
     length: float
     stiffness: float
     dimension: int
+    softness: float = 1.0
 
     @property
     def energy(self) -> float:
@@ -72,6 +75,8 @@ class Discretisation:
         Degree that is integrated exactly.
     scales
         Sizes by which solvers measure the unknowns.
+    near
+        Errors of the unknowns, in typical sizes, up to which the factor of an old tangent serves.
     """
 
     state: fem.Function
@@ -87,6 +92,7 @@ class Discretisation:
     curvature_degree: int
     quadrature_degree: int
     scales: Scales
+    near: float
 
     def field(self, name: str) -> Field | None:
         """The field of that name, or None where the scheme has no use for it."""

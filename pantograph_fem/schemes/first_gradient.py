@@ -13,7 +13,7 @@ from .. import dolfinx_api as api
 from ..physics.energy import FibreEnergy
 from .discretisation import Discretisation, Scales, integration
 from .field import fields_of
-from .stiff import stretching
+from .stiff import near, stretching
 
 
 def first_gradient(
@@ -45,4 +45,5 @@ def first_gradient(
         curvature_degree=0,
         quadrature_degree=quadrature_degree,
         scales=scales,
+        near=near(scales),
     )

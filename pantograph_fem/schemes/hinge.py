@@ -28,6 +28,10 @@ from .discretisation import Discretisation, Scales, integration
 from .field import fields_of
 from .stiff import StiffEnergy, bending, stretching
 
+#: Errors up to which an old factor serves. Farther off, its steps leave angles at the hinges whose
+#: moments, the larger the smaller the elements, spoil the tangent that extrapolates them.
+_NEAR = 1e-4
+
 
 def trace_constant(domain: mesh.Mesh, degree: int) -> Expr:
     r"""Constant c of the trace inequality, 1/m.
@@ -107,4 +111,5 @@ def hinge(
         curvature_degree=degree - 2,
         quadrature_degree=quadrature_degree,
         scales=scales,
+        near=_NEAR,
     )

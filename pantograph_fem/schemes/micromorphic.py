@@ -33,7 +33,7 @@ from .. import dolfinx_api as api
 from ..physics.energy import FibreEnergy
 from .discretisation import Discretisation, Scales, integration
 from .field import fields_of
-from .stiff import stretching
+from .stiff import near, stretching
 
 #: c of the augmentation. With 1 to 20 the buckling load of upright fibres is exact on any mesh, and
 #: the force of the bias test changes by less than 1e-4; with 0 it is missed by up to 70 %.
@@ -91,4 +91,5 @@ def micromorphic(
         curvature_degree=auxiliary_degree - 1,
         quadrature_degree=quadrature_degree,
         scales=scales,
+        near=near(scales),
     )

@@ -25,9 +25,6 @@ from .newton_settings import NewtonSettings
 from .origin import Origin
 from .problem import Problem
 
-#: Errors, in typical sizes, up to which an old factor serves a problem that extrapolates stresses.
-#: Farther off its steps leave strains that the next tangent would extrapolate.
-_NEAR = 1e-3
 #: Held unknowns that are less than this off, in typical sizes, are in place.
 _IN_PLACE = 1e-13
 
@@ -83,7 +80,7 @@ class NewtonPath:
             self._matrix,
             problem.typical_sizes,
             problem.typical_energy,
-            replace(settings, near=_NEAR) if problem.extrapolates else settings,
+            replace(settings, near=problem.near),
             self._potential if problem.has_minima else None,
         )
         self._corrector = Corrector(problem, self._newton, self._set_load)

@@ -39,8 +39,8 @@ class Problem(Protocol):
         """Whether the stable states are minima of :meth:`potential`."""
 
     @property
-    def extrapolates(self) -> bool:
-        """Whether tangents make use of an origin."""
+    def near(self) -> float:
+        """Errors, in typical sizes, up to which the factor of an old tangent serves."""
 
     def matrix(self) -> PETSc.Mat:
         """An empty matrix for the tangent."""
