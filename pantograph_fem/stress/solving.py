@@ -130,7 +130,7 @@ SOLVING = (
         "huge",
         "a million unknowns, micromorphic scheme",
         BIAS,
-        ("mesh.size=0.001", "continuation.stops=[1.0]"),
+        ("mesh.size=0.0009", "continuation.stops=[1.0]"),
         (SameAs("paper_a", "force", relative=1e-3),),
         huge=True,
         limit=6 * 3600.0,
