@@ -39,10 +39,10 @@ accuracy() {
     local pivots=discretisation.quadrature_degree
     reference a_bias_extension 0.0044 0.00005
     work_precision a_bias_extension a_bias_extension a_bias_extension_work_precision \
-        --degree 2 --degree 3 "${meshes[@]}" --repeat 3
+        --degree 2 --degree 3 "${meshes[@]}"
     work_precision a_bias_extension high_degrees a_bias_extension_high_degrees \
         --degree 4 --degree 5 --set mesh.growth=0.5 --mesh 0.034/0.0025 --mesh 0.025/0.001 \
-        --mesh 0.025/0.0005 --mesh 0.025/0.0002 --repeat 3
+        --mesh 0.025/0.0005 --mesh 0.025/0.0002
     reference b_shear 0.0062 0.00008
     work_precision b_shear b_shear b_shear_work_precision --degree 3 --degree 4 "${meshes[@]}"
     reference c_rotation_45 0.0062 0.00008
@@ -52,7 +52,7 @@ accuracy() {
     work_precision d_compression_3 d_compression_3 d_compression_3_work_precision \
         --degree 3 --degree 4 "${meshes[@]}" --set $pivots=9
     pantograph study cases/beam_arc.toml --scheme micromorphic --scheme hinge \
-        --degree 2 --degree 3 --degree 4 --repeat 3
+        --degree 2 --degree 3 --degree 4
     cp results/study_beam_arc/work_precision.png $figures/beam_arc_work_precision.png
 }
 
