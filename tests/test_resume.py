@@ -114,7 +114,7 @@ def test_a_finished_run_that_is_resumed_stays_as_it_is(tmp_path, whole):
 def test_a_path_that_ended_early_goes_on_with_other_settings(tmp_path, whole):
     hard = {"stops": [0.02, 1.0], "initial_step": 0.5, "min_step": 0.5, "max_step": 0.5}
     with pytest.raises(PathError):
-        run(variant(continuation=hard | {"max_iterations": 8}), tmp_path, quiet=True)
+        run(variant(continuation=hard | {"max_iterations": 2}), tmp_path, quiet=True)
     assert read_history(tmp_path / "history.csv")["load"].tolist() == [0.0, 0.02]
     result = run(variant(title="another"), tmp_path, resume=True, quiet=True)
     assert result.rows[-1].load == 1.0

@@ -32,7 +32,7 @@ TOO_HARD = {
         "initial_step": 0.5,
         "min_step": 0.5,
         "max_step": 0.5,
-        "max_iterations": 5,
+        "max_iterations": 2,
     },
 }
 

@@ -126,8 +126,9 @@ def test_the_outputs_are_those_of_the_kind(tmp_path):
     assert "energy_foundation" in outputs("beam_winkler_a1", "material.stretch", 1e7)
     assert "energy_shear" in outputs("lattice_bias_extension", "lattice.spacing", 0.01)
     assert "energy_shear" in outputs("a_bias_extension", "material.shear", 160.0)
-    read = outputs("bias_experiment", "material.shear", 160.0, outputs=["psi1", "force"])
-    assert read == ("psi1", "force")
+    read = ["psi1", "force"]
+    wanted = {"outputs": read, "responses": ["psi1"]}
+    assert outputs("bias_experiment", "material.shear", 160.0, **wanted) == tuple(read)
 
 
 @pytest.mark.parametrize(
