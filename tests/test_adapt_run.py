@@ -16,6 +16,7 @@ from pantograph_fem.results.history import read_history
 
 from .conftest import COARSE, merged, run
 from .processes import SEVERAL
+from .test_resume import PowerCut
 
 pytestmark = pytest.mark.core
 
@@ -101,10 +102,6 @@ def test_other_runs_have_no_accuracy_and_leave_no_mesh(tmp_path, result):
     run(easy(mesh={"adapt": False}), tmp_path, quiet=True)
     assert "accuracy" not in summary(tmp_path)
     assert not (tmp_path / MESH_FILE).exists()
-
-
-class PowerCut(BaseException):
-    pass
 
 
 @pytest.mark.skipif(SEVERAL, reason="open: at times the first state after --resume is wrong there")

@@ -261,15 +261,20 @@ def test_an_output_that_cannot_be_a_folder_is_refused(tmp_path, output):
     assert_refused(done, 2, output)
 
 
-def test_a_reader_that_goes_away_is_no_crash(tmp_path):
-    write_case(tmp_path, continuation={"max_step": 0.05}, output={"fields": "none"})
-    with subprocess.Popen(
+def started(folder):
+    """A run of the case in a folder, whose output can be read while it goes on."""
+    return subprocess.Popen(
         [PANTOGRAPH, "run", "case.toml"],
-        cwd=tmp_path,
+        cwd=folder,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
-    ) as process:
+    )
+
+
+def test_a_reader_that_goes_away_is_no_crash(tmp_path):
+    write_case(tmp_path, continuation={"max_step": 0.05}, output={"fields": "none"})
+    with started(tmp_path) as process:
         process.stdout.readline()
         process.stdout.close()
         errors = process.stderr.read()
@@ -293,13 +298,7 @@ def test_a_broken_pipe_that_is_not_the_reader_is_an_error():
 
 def test_an_interrupt_says_how_to_go_on(tmp_path):
     write_case(tmp_path, continuation={"max_step": 0.01}, output={"fields": "none"})
-    with subprocess.Popen(
-        [PANTOGRAPH, "run", "case.toml"],
-        cwd=tmp_path,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    ) as process:
+    with started(tmp_path) as process:
         process.stdout.readline()
         process.send_signal(signal.SIGINT)
         _, errors = process.communicate()

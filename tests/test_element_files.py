@@ -12,6 +12,7 @@ from pantograph_fem.results.history import read_history
 from pantograph_fem.running import run
 
 from .conftest import COARSE, merged
+from .test_resume import PowerCut
 from .test_run_kinds import BEAM, CHAIN, LATTICE
 
 PROBES = [[0.031, 0.1], [0.01, 0.01], [0.055, 0.19]]
@@ -25,9 +26,9 @@ SHEET = merged(
 )
 
 
-def with_elements(case, **changes):
+def with_elements(case):
     output = {"elements": True, "figures": False, "probes": []}
-    return case_from_dict(merged(merged(case, {"output": output}), changes))
+    return case_from_dict(merged(case, {"output": output}))
 
 
 def displacement_at(grid, place):
@@ -95,9 +96,6 @@ def test_a_run_without_them_removes_those_of_an_earlier_one(tmp_path):
 
 
 def test_an_interrupted_list_is_gone_on_with(tmp_path, monkeypatch):
-    class PowerCut(BaseException):
-        pass
-
     def mortal(*arguments):
         if arguments[3].states == 3:  # its state is already in the list
             raise PowerCut

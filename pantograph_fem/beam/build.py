@@ -39,11 +39,10 @@ def discretise_beam(case: BeamCase, axis: Axis) -> Discretisation:
     """Energy (16) by the scheme of the case."""
     options, material = case.discretisation, case.material
     stretch, bending = material.stretch or 0.0, (material.bending or 0.0) / axis.length**2
-    softness = bending / stretch if stretch else 1.0
     return discretise(
         axis.mesh,
         build_energy(case, axis),
-        Scales(axis.length, max(stretch, bending), dimension=1, softness=softness),
+        Scales.of(axis.length, 1, stretch, bending),
         scheme=options.scheme,
         degree=options.degree,
         auxiliary_degree=options.auxiliary_degree,

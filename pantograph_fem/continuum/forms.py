@@ -27,8 +27,6 @@ class EquilibriumForms:
         Stored energy of each effect, J.
     pull
         Minus the rate of the residual with the load at fixed state; None where there is none.
-    extrapolates
-        Whether the tangent extrapolates stresses: see :mod:`pantograph_fem.schemes.stiff`.
     """
 
     def __init__(
@@ -52,7 +50,7 @@ class EquilibriumForms:
         for part in stiff:
             tangent += part.correction(state, self._origin, self._step)
         pulls = [support.pull for support in supports if support.pull is not None]
-        self.extrapolates = bool(stiff)
+        self._extrapolates = bool(stiff)
         self.potential = api.form(functional) if has_minima else None
         self.residual = api.form(residual)
         self.tangent = api.form(tangent)
@@ -60,8 +58,8 @@ class EquilibriumForms:
         self.pull = api.form(ufl.derivative(sum(pulls), state)) if pulls else None
 
     def extrapolate_from(self, origin: Origin) -> None:
-        """Set where the tangent extrapolates stresses from."""
-        if not self.extrapolates:
+        """Set where the tangent extrapolates stresses from: see `pantograph_fem.schemes.stiff`."""
+        if not self._extrapolates:
             return
         for function, values in ((self._origin, origin.x), (self._step, origin.step)):
             function.x.array[: len(values)] = values

@@ -13,6 +13,7 @@ from petsc4py import PETSc
 from ..physics.reaction import NO_REACTION, Reaction
 from ..physics.rigid_motion import RigidMotion
 from ..solve.failure import Remedies
+from ..solve.newton_settings import NewtonSettings
 from ..solve.origin import Origin
 from ..stopwatch import Stopwatch
 from .assembly import TangentRows
@@ -108,8 +109,8 @@ class LatticeEquilibrium:
 
     @property
     def near(self) -> float:
-        """As nothing is extrapolated, what saves most."""
-        return 1e-2
+        """The default, as nothing is extrapolated."""
+        return NewtonSettings.near
 
     def matrix(self) -> PETSc.Mat:
         """An empty matrix for the tangent."""

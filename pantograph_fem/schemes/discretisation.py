@@ -36,6 +36,12 @@ class Scales:
     dimension: int
     softness: float = 1.0
 
+    @classmethod
+    def of(cls, length: float, dimension: int, stretch: float, others: float) -> Scales:
+        """Scales of fibres that resist stretch, and of the largest of what else resists."""
+        softness = others / stretch if stretch else 1.0
+        return cls(length, max(stretch, others), dimension, softness)
+
     @property
     def energy(self) -> float:
         """Energy that goes with them, J."""

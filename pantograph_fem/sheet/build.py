@@ -97,14 +97,8 @@ def _grip(grip: GripCase, domain: Domain, name: str) -> Grip:
 
 
 def _scales(case: SheetCase, domain: Domain) -> Scales:
-    """Extent of the sheet, and the largest stiffness there is, in N/m."""
+    """Extent of the sheet, and its stiffnesses in N/m."""
     material = case.material
     stretch = max(material.stretch_pair or (0.0,))
     bending = max(material.bending_pair or (0.0,)) / domain.extent**2
-    easy = max(material.shear or 0.0, bending)
-    return Scales(
-        length=domain.extent,
-        stiffness=max(stretch, easy),
-        dimension=2,
-        softness=easy / stretch if stretch else 1.0,
-    )
+    return Scales.of(domain.extent, 2, stretch, max(material.shear or 0.0, bending))
