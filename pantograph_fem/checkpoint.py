@@ -5,14 +5,18 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from zipfile import BadZipFile
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .errors import CaseError
+from .numbering import same_points
 from .parallel import at_root
 from .solve.continuation import Checkpoint
 from .solve.predictor import PathPoint
@@ -21,6 +25,8 @@ if TYPE_CHECKING:
     from mpi4py import MPI
 
     from .case import Case
+
+Array = NDArray[np.float64]
 
 NAME = "checkpoint.npz"
 #: Sections of a case that may differ between the parts of a run: they change no equilibrium.
@@ -56,23 +62,31 @@ def fingerprint(case: Case) -> str:
     return digest.hexdigest()
 
 
-def save(directory: Path, comm: MPI.Comm, case_fingerprint: str, saved: Saved) -> None:
-    """Replace the checkpoint of a run in one step; a collective call."""
+def save(
+    directory: Path, comm: MPI.Comm, case_fingerprint: str, unknowns: Array, saved: Saved
+) -> None:
+    """Replace the checkpoint of a run in one step; a collective call.
+
+    `unknowns` tells what each owned unknown is: see :attr:`.simulation.Simulation.unknowns`.
+    """
     checkpoint = saved.checkpoint
-    parts = comm.gather([(point.load, point.x, point.rate) for point in checkpoint.points], root=0)
+    own = {"unknowns": unknowns}
+    for i, point in enumerate(checkpoint.points):
+        assert point.rate is not None  # accepted states have it
+        own[f"point_{i}"] = np.column_stack([point.x, point.rate])
+    parts = comm.gather(own, root=0)
 
     def write() -> None:
+        assert parts is not None
         arrays: dict[str, Any] = {
             "fingerprint": case_fingerprint,
-            "ranks": comm.size,
             "counts": [checkpoint.number, checkpoint.iterations, saved.rows, saved.states],
             "step_size": checkpoint.step_size,
             "critical_points": json.dumps(saved.critical_points),
+            "loads": [point.load for point in checkpoint.points],
         }
-        for rank, points in enumerate(parts or []):
-            for i, (load, x, rate) in enumerate(points):
-                arrays[f"{rank}_{i}"] = np.stack([x, rate])
-                arrays[f"load_{i}"] = load
+        for name in own:
+            arrays[name] = np.concatenate([part[name] for part in parts])
         aside = directory / (NAME + ".part")
         with aside.open("wb") as file:
             np.savez(file, **arrays)
@@ -83,57 +97,85 @@ def save(directory: Path, comm: MPI.Comm, case_fingerprint: str, saved: Saved) -
     at_root(comm, write)
 
 
-def load(directory: Path, comm: MPI.Comm, case: Case) -> Saved | None:
-    """The checkpoint of an earlier run, None if there is none; a collective call.
+def is_there(directory: Path, comm: MPI.Comm, case: Case) -> bool:
+    """Whether an earlier run of the case has left a checkpoint; a collective call.
 
     Raises
     ------
     CaseError
-        If it is damaged, or belongs to another case or another number of processes.
+        If it is damaged, or belongs to another case.
     """
     path = directory / NAME
 
-    def read() -> list[Saved | None]:
+    def look() -> bool:
         if not path.is_file():
-            return [None] * comm.size
-        with np.load(path) as file:
+            return False
+        with _opened(path) as file:
             if str(file["fingerprint"]) != fingerprint(case):
                 raise CaseError(
                     f"{path} belongs to another case: only the sections {', '.join(sorted(_FREE))} "
                     "may differ from those of the interrupted run; start anew without --resume"
                 )
-            if int(file["ranks"]) != comm.size:
-                raise CaseError(
-                    f"{path} was written by {int(file['ranks'])} processes and cannot be taken up "
-                    f"by {comm.size}; use the same number, or start anew without --resume"
-                )
+        return True
+
+    return comm.bcast(at_root(comm, look), root=0)
+
+
+def load(directory: Path, comm: MPI.Comm, unknowns: Array) -> Saved:
+    """The checkpoint of an earlier run for the unknowns that there are now; a collective call.
+
+    The earlier run may have had another number of processes, or numbered its unknowns otherwise.
+
+    Raises
+    ------
+    CaseError
+        If it is damaged, or belongs to other unknowns.
+    """
+    path = directory / NAME
+    everyone = comm.gather(unknowns, root=0)
+
+    def read() -> list[Saved]:
+        assert everyone is not None
+        with _opened(path) as file:
             number, iterations, rows, states = (int(n) for n in file["counts"])
-            # without them in files of earlier versions
-            known = str(file["critical_points"]) if "critical_points" in file.files else "[]"
-            critical_points = tuple(json.loads(known))
-            count = sum(name.startswith("load_") for name in file.files)
-            return [
-                Saved(
-                    Checkpoint(
-                        tuple(
-                            PathPoint(float(file[f"load_{i}"]), *file[f"{rank}_{i}"])
-                            for i in range(count)
-                        ),
-                        number,
-                        iterations,
-                        float(file["step_size"]),
-                    ),
-                    rows,
-                    states,
-                    critical_points,
-                )
-                for rank in range(comm.size)
-            ]
-
-    def read_or_explain() -> list[Saved | None]:
+            critical_points = tuple(json.loads(str(file["critical_points"])))
+            step_size, loads = float(file["step_size"]), file["loads"].tolist()
+            points = [file[f"point_{i}"] for i in range(len(loads))]
+            known = file["unknowns"]
         try:
-            return read()
-        except (ValueError, KeyError, OSError, EOFError, BadZipFile) as error:
-            raise CaseError(f"{path} is damaged ({error}); start anew without --resume") from error
+            order = same_points(known, np.concatenate(everyone))
+        except ValueError as error:
+            raise CaseError(
+                f"{path} belongs to another mesh ({error}), as another version of gmsh or of "
+                "this program makes; start anew without --resume"
+            ) from None
+        shares = np.split(order, np.cumsum([len(part) for part in everyone])[:-1])
+        return [
+            Saved(
+                Checkpoint(
+                    tuple(
+                        PathPoint(load, *np.ascontiguousarray(point[share].T))
+                        for load, point in zip(loads, points, strict=True)
+                    ),
+                    number,
+                    iterations,
+                    step_size,
+                ),
+                rows,
+                states,
+                critical_points,
+            )
+            for share in shares
+        ]
 
-    return comm.scatter(at_root(comm, read_or_explain) or [], root=0)
+    return comm.scatter(at_root(comm, read) or [], root=0)
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[Any]:
+    """The arrays of a checkpoint by their names."""
+    try:
+        with np.load(path) as file:
+            yield file
+    except (ValueError, KeyError, OSError, EOFError, BadZipFile) as error:
+        raise CaseError(f"{path} is damaged ({error}); start anew without --resume") from error

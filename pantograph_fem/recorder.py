@@ -135,7 +135,8 @@ class Recorder:
                 self._elements.write(step.load)
             if step.critical is None:  # there the tangent is singular, and leads nowhere
                 # Last: if the run dies before this, it is taken up one state earlier.
-                checkpoint.save(self._directory, self._comm, self._fingerprint, before)
+                unknowns = self._simulation.unknowns
+                checkpoint.save(self._directory, self._comm, self._fingerprint, unknowns, before)
 
     def rejected(self, load: float, step: float, reason: str) -> None:
         """Count and show a step that was cut back."""

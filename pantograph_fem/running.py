@@ -85,8 +85,9 @@ def run(
     clock = Stopwatch()
     directory = directory or Path("results") / case.name
     at_root(comm, lambda: _check_folder(directory))
-    saved = checkpoint.load(directory, comm, case) if resume else None
-    simulation, accuracy = _simulation(case, directory, clock, comm, quiet, saved is not None)
+    resumed = resume and checkpoint.is_there(directory, comm, case)
+    simulation, accuracy = _simulation(case, directory, clock, comm, quiet, resumed)
+    saved = checkpoint.load(directory, comm, simulation.unknowns) if resumed else None
     recorder = Recorder(case, simulation, directory, clock, comm, quiet, saved, accuracy)
     start = saved.checkpoint if saved else start_at(simulation.start)
     status = DONE

@@ -48,6 +48,13 @@ class Simulation(Protocol):
     def start(self) -> Array:
         """The state at load factor 0."""
 
+    @property
+    def unknowns(self) -> Array:
+        """What each owned unknown is, however it is numbered, shape (n, 3).
+
+        A number for its component of its field, and where in the reference shape it is.
+        """
+
     def grid(self) -> FieldGrid | None:
         """Nodes of the fields on rank 0, None elsewhere."""
 

@@ -15,7 +15,6 @@ from pantograph_fem.errors import CaseError
 from pantograph_fem.results.history import read_history
 
 from .conftest import COARSE, merged, run
-from .processes import SEVERAL
 from .test_resume import PowerCut
 
 pytestmark = pytest.mark.core
@@ -104,7 +103,6 @@ def test_other_runs_have_no_accuracy_and_leave_no_mesh(tmp_path, result):
     assert not (tmp_path / MESH_FILE).exists()
 
 
-@pytest.mark.skipif(SEVERAL, reason="open: at times the first state after --resume is wrong there")
 def test_an_interrupted_run_goes_on_with_its_mesh(tmp_path, result, monkeypatch):
     save, calls = checkpoint.save, []
 

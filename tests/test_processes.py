@@ -1,6 +1,8 @@
 """What several processes find together is what one finds alone."""
 
+import itertools
 import json
+from contextlib import nullcontext
 
 import numpy as np
 import pytest
@@ -8,7 +10,7 @@ from scipy.spatial import cKDTree
 
 from mpi4py import MPI
 
-from pantograph_fem import running
+from pantograph_fem import checkpoint, running
 from pantograph_fem.case import case_from_dict
 from pantograph_fem.results.fields import read_fields
 from pantograph_fem.results.history import read_history
@@ -16,6 +18,7 @@ from pantograph_fem.results.history import read_history
 from .conftest import COARSE, merged
 from .processes import SEVERAL, WORLD
 from .test_adapt_run import EASY
+from .test_resume import PowerCut
 from .test_run_kinds import BEAM, CHAIN, LATTICE
 from .test_stability_cases import COLUMN, UPRIGHT, critical_load
 
@@ -98,6 +101,48 @@ def test_histories_and_fields_are_the_same(both):
             assert_same(shared[name][common], values[common], size_of(name, alone), name)
     if (both[0] / "fields.xdmf").exists():
         assert_same_fields(*map(read_fields, both))
+
+
+@pytest.mark.parametrize("name", ["micromorphic", "hinge", "adapted", "beam", "lattice"])
+@pytest.mark.parametrize("after", [MPI.COMM_WORLD, MPI.COMM_SELF], ids=["more", "fewer"])
+def test_a_run_is_taken_up_by_more_or_fewer_processes(name, after, tmp_path, monkeypatch):
+    case = case_from_dict(merged(CASES[name], {"continuation": {"max_step": 0.25}}))
+    before = MPI.COMM_WORLD if after == MPI.COMM_SELF else MPI.COMM_SELF
+    whole, parts = tmp_path / f"whole_{WORLD.rank}", tmp_path / "parts"
+    running.run(case, whole, quiet=True, comm=MPI.COMM_SELF)
+
+    def by(comm, **options):
+        if comm == MPI.COMM_WORLD or WORLD.rank == 0:
+            return running.run(case, parts, quiet=True, comm=comm, **options)
+        return None
+
+    with monkeypatch.context() as patch:
+        patch.setattr(checkpoint, "save", mortal(checkpoint.save, survived=2))
+        mine = WORLD.rank == 0 or before == MPI.COMM_WORLD
+        with pytest.raises(PowerCut) if mine else nullcontext():
+            by(before)
+    WORLD.Barrier()
+    by(after, resume=True)
+    WORLD.Barrier()
+
+    found, expected = (read_history(folder / "history.csv") for folder in (parts, whole))
+    assert found["load"].tolist() == expected["load"].tolist()
+    for column in ("force_x", "force_y", "moment", "energy"):
+        assert_same(found[column], expected[column], size_of(column, expected), column)
+    if (parts / "fields.xdmf").exists():
+        assert_same_fields(*map(read_fields, (parts, whole)))
+
+
+def mortal(save, survived):
+    """Saves so many checkpoints; then the power is cut."""
+    calls = itertools.count()
+
+    def save_or_die(*arguments):
+        if next(calls) == survived:
+            raise PowerCut
+        save(*arguments)
+
+    return save_or_die
 
 
 def size_of(column, history):

@@ -71,6 +71,11 @@ class BeamSimulation:
         """The state of rest."""
         return self._equilibrium.undeformed()
 
+    @property
+    def unknowns(self) -> Array:
+        """What each owned unknown is: see :attr:`.Simulation.unknowns`."""
+        return self._equilibrium.unknowns
+
     def grid(self) -> FieldGrid | None:
         """Nodes along the axis on rank 0, None elsewhere."""
         if self._nodes is None:

@@ -75,6 +75,11 @@ class ContinuumEquilibrium:
         return self.discretisation.typical_sizes()[: self._owned]
 
     @property
+    def unknowns(self) -> Array:
+        """What each owned dof is, and where: see :meth:`.Discretisation.unknowns`."""
+        return self.discretisation.unknowns()[: self._owned]
+
+    @property
     def typical_energy(self) -> float:
         """Typical energy, J."""
         return self.discretisation.scales.energy

@@ -89,6 +89,15 @@ class LatticeEquilibrium:
         return np.full(2 * (self._last - self._first), self.net.extent)
 
     @property
+    def unknowns(self) -> Array:
+        """Component and number of the node of each owned unknown, shape (n, 3).
+
+        Places would not do: nodes may share one.
+        """
+        nodes = np.repeat(np.arange(self._first, self._last), 2)
+        return np.column_stack([np.arange(len(nodes)) % 2, nodes, np.zeros(len(nodes))])
+
+    @property
     def typical_energy(self) -> float:
         """Largest stiffness, as of a link, times the square of the extent, J."""
         net, extent = self.net, self.net.extent

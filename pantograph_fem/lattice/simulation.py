@@ -63,6 +63,11 @@ class NetSimulation:
         """The state of rest."""
         return self._equilibrium.undeformed()
 
+    @property
+    def unknowns(self) -> Array:
+        """What each owned unknown is: see :attr:`.Simulation.unknowns`."""
+        return self._equilibrium.unknowns
+
     def grid(self) -> FieldGrid | None:
         """Nodes and links on rank 0, None elsewhere."""
         net = self._problem.net

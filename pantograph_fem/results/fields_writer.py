@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import CaseError
+from ..numbering import same_cells, same_points
 from .fields import H5_NAME, XDMF_NAME, FieldGrid, read_fields
 from .space import require_space
 from .xdmf import Dataset, StateEntry, XdmfIndex
@@ -48,8 +49,14 @@ class FieldsWriter:
             cells=Dataset(H5_NAME, "/cells", grid.cells.shape),
         )
         self._count = 0
+        #: Rows of fields as they come, in the order in which they are stored.
+        self._node_order, self._cell_order = np.arange(self._nodes), np.arange(self._cells)
         if kept:
-            for entry in _states_to_keep(directory, grid, kept):
+            old = read_fields(directory)
+            self._node_order, self._cell_order = _orders_of_old_grid(directory, old.grid, grid)
+            if len(old.loads) < kept:
+                raise CaseError(f"{directory} holds {len(old.loads)} states; {kept} are to be kept")
+            for entry in old.entries[:kept]:
                 self._list(entry)
             self._index.save(directory / XDMF_NAME)
         else:
@@ -85,8 +92,9 @@ class FieldsWriter:
         OSError
             If the disk is full; nothing is changed then.
         """
-        arrays = _checked(fields, self._nodes)
-        cell_arrays = {f"cells/{name}": a for name, a in _checked(cell_fields, self._cells).items()}
+        arrays = _ordered(fields, self._node_order)
+        cell_arrays = _ordered(cell_fields, self._cell_order)
+        cell_arrays = {f"cells/{name}": values for name, values in cell_arrays.items()}
         new = arrays | cell_arrays
         require_space(self._directory, sum(values.nbytes for values in new.values()))
         # Closed after each step: while it is open it is locked, and nobody could look at it.
@@ -131,27 +139,30 @@ def append_step(file: h5py.File, index: int, arrays: Mapping[str, Array]) -> str
     return f"/steps/{name}"
 
 
-def _states_to_keep(directory: Path, grid: FieldGrid, kept: int) -> tuple[StateEntry, ...]:
-    series = read_fields(directory)
-    old = series.grid
-    if len(series.loads) < kept:
-        raise CaseError(f"{directory} holds {len(series.loads)} states; {kept} are to be kept")
-    if not np.array_equal(old.cells, grid.cells) or not (
-        old.points.shape == grid.points.shape and np.allclose(old.points, grid.points)
-    ):
-        raise CaseError(f"the states in {directory} are on another mesh and cannot be continued")
-    return series.entries[:kept]
+def _orders_of_old_grid(
+    directory: Path, old: FieldGrid, grid: FieldGrid
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Rows of the nodes and of the cells of a grid in the order of those that are stored."""
+    try:
+        nodes = same_points(grid.points, old.points)
+        numbers = np.empty_like(nodes)
+        numbers[nodes] = np.arange(len(nodes))
+        return nodes, same_cells(numbers[grid.cells], old.cells)
+    except ValueError as error:
+        raise CaseError(
+            f"the states in {directory} are on another mesh and cannot be continued: {error}"
+        ) from None
 
 
-def _checked(fields: Mapping[str, Array], number: int) -> dict[str, Array]:
-    """Fields as they are stored, if there is a value for each of so many nodes or cells."""
-    allowed = {(number,), (number, 2)}
+def _ordered(fields: Mapping[str, Array], order: NDArray[np.int64]) -> dict[str, Array]:
+    """Fields as they are stored, if there is a value for each node or cell."""
+    allowed = {(len(order),), (len(order), 2)}
     for name, values in fields.items():
         if values.shape not in allowed:
             shapes = ", ".join(map(str, sorted(allowed)))
             raise ValueError(f"{name} has shape {values.shape}; allowed: {shapes}")
     return {
-        name: _padded(values) if values.ndim == 2 else np.asarray(values, float)
+        name: _padded(values[order]) if values.ndim == 2 else np.asarray(values[order], float)
         for name, values in fields.items()
     }
 

@@ -127,6 +127,18 @@ class Discretisation:
             sizes[field.dofs.ravel()] = field.typical
         return sizes
 
+    def unknowns(self) -> np.ndarray:
+        """What every local dof of the state is, however it is numbered, shape (dofs, 3).
+
+        A number for its component of its field, and the reference position of its node, m.
+        """
+        unknowns = np.empty((len(self.state.x.array), 3))
+        components = [(field, dofs) for field in self.fields for dofs in field.dofs.T]
+        for number, (field, dofs) in enumerate(components):
+            unknowns[dofs, 0] = number
+            unknowns[dofs, 1:] = field.coordinates
+        return unknowns
+
 
 def integration(
     kind: str,

@@ -93,6 +93,11 @@ class SheetSimulation:
         """The state of rest."""
         return self.equilibrium.undeformed()
 
+    @property
+    def unknowns(self) -> Array:
+        """What each owned unknown is: see :attr:`.Simulation.unknowns`."""
+        return self.equilibrium.unknowns
+
     @cached_property
     def _sampler(self) -> FieldSampler:
         """Only where fields are looked at: most meshes on the way to a better one are not."""
