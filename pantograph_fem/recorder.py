@@ -63,6 +63,7 @@ class Recorder:
         self._comm = comm
         # Once: it reads the mesh file, which may change while the run goes on.
         self._fingerprint = checkpoint.fingerprint(case)
+        self._unknowns = simulation.unknowns
         self._progress = Progress(
             case.title or case.name,
             quiet=quiet or comm.rank != 0,
@@ -135,8 +136,9 @@ class Recorder:
                 self._elements.write(step.load)
             if step.critical is None:  # there the tangent is singular, and leads nowhere
                 # Last: if the run dies before this, it is taken up one state earlier.
-                unknowns = self._simulation.unknowns
-                checkpoint.save(self._directory, self._comm, self._fingerprint, unknowns, before)
+                checkpoint.save(
+                    self._directory, self._comm, self._fingerprint, self._unknowns, before
+                )
 
     def rejected(self, load: float, step: float, reason: str) -> None:
         """Count and show a step that was cut back."""

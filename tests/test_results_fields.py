@@ -192,6 +192,20 @@ def test_continued_run_drops_later_states(tmp_path: Path) -> None:
         assert len(file["steps"]) == 3
 
 
+def test_a_grid_in_another_order_is_continued_in_that_of_the_first(tmp_path: Path) -> None:
+    grid, _ = written(tmp_path)
+    rng = np.random.default_rng(0)
+    order = rng.permutation(len(grid.points))  # of its nodes
+    numbers = np.argsort(order)
+    shuffled = FieldGrid(grid.points[order], rng.permutation(numbers[grid.cells]))
+    FieldsWriter(tmp_path, shuffled, kept=1).write(0.7, state(shuffled, 0.7))
+    series = read_fields(tmp_path)
+    np.testing.assert_array_equal(series.grid.points, grid.points)
+    np.testing.assert_array_equal(series.grid.cells, grid.cells)
+    for name, values in state(grid, 0.7).items():
+        np.testing.assert_allclose(series.fields(1)[name], values, rtol=1e-14)
+
+
 def test_run_on_another_mesh_is_not_continued(tmp_path: Path) -> None:
     grid, _ = written(tmp_path)
     with pytest.raises(CaseError, match="3 states; 4"):
