@@ -7,13 +7,13 @@ which of them is at which load. It lists what is complete, also while the run go
 from __future__ import annotations
 
 from pathlib import Path
-from xml.etree.ElementTree import Element, SubElement, indent, parse, tostring
+from xml.etree.ElementTree import Element, SubElement, parse
 
 from dolfinx import fem, mesh
 
 from .. import dolfinx_api as api
 from ..parallel import at_root
-from ..results.atomic import replace_text
+from ..results.atomic import replace_xml
 from ..results.elements import FOLDER, LIST
 from ..results.space import require_space
 from ..results.times import Times
@@ -91,6 +91,5 @@ class ElementFiles:
             number=str(self._count),
             file=f"{FOLDER}/{entry.attrib['file']}",
         )
-        indent(self._root)
-        replace_text(self._directory / LIST, f"{tostring(self._root, 'unicode')}\n")
+        replace_xml(self._directory / LIST, self._root)
         alone.unlink()

@@ -2,6 +2,7 @@
 
 import os
 from pathlib import Path
+from xml.etree.ElementTree import Element, indent, tostring
 
 
 def replace_text(path: Path, text: str) -> None:
@@ -16,3 +17,9 @@ def replace_text(path: Path, text: str) -> None:
         file.flush()
         os.fsync(file.fileno())
     os.replace(aside, path)
+
+
+def replace_xml(path: Path, root: Element) -> None:
+    """Replace the contents of a file in one step by a tree, a line for each of its elements."""
+    indent(root)
+    replace_text(path, f'<?xml version="1.0"?>\n{tostring(root, "unicode")}\n')

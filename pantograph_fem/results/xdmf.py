@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from xml.etree.ElementTree import Element, SubElement, indent, parse, tostring
+from xml.etree.ElementTree import Element, SubElement, parse
 
-from .atomic import replace_text
+from .atomic import replace_xml
 from .times import Times
 
 Shape = tuple[int, ...]
@@ -83,8 +83,7 @@ class XdmfIndex:
 
     def save(self, path: Path) -> None:
         """Write the index, replacing an earlier one in one step."""
-        indent(self._root)
-        replace_text(path, f'<?xml version="1.0"?>\n{tostring(self._root, "unicode")}\n')
+        replace_xml(path, self._root)
 
 
 def read_index(path: Path) -> list[StateEntry]:
