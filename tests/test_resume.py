@@ -6,11 +6,13 @@ import pytest
 from pantograph_fem import checkpoint
 from pantograph_fem.case import case_from_dict
 from pantograph_fem.errors import CaseError, PathError
+from pantograph_fem.parallel import at_root
 from pantograph_fem.recorder import Recorder
 from pantograph_fem.results.fields import read_fields
 from pantograph_fem.results.history import read_history
 
 from .conftest import COARSE, merged, run
+from .processes import WORLD
 
 pytestmark = pytest.mark.core
 
@@ -139,6 +141,22 @@ def test_another_case_is_not_taken_for_the_interrupted_one(tmp_path, interrupted
     with pytest.raises(CaseError, match=r"belongs to another case.*without --resume"):
         run(variant(**changes), tmp_path, resume=True, quiet=True)
     assert (tmp_path / "history.csv").read_text() == before
+
+
+def test_another_mesh_of_the_same_case_is_not_taken_for_the_first(tmp_path, interrupted):
+    """As another version of the mesher would make."""
+    interrupted(tmp_path, "before the state is recorded")
+    path = tmp_path / checkpoint.NAME
+
+    def move_a_node():
+        with np.load(path) as file:
+            arrays = dict(file)
+        arrays["unknowns"][0, 1] += 1e-3
+        np.savez(path, **arrays)
+
+    at_root(WORLD, move_a_node)
+    with pytest.raises(CaseError, match=r"belongs to another mesh.*without --resume"):
+        run(variant(), tmp_path, resume=True, quiet=True)
 
 
 def test_other_probes_do_not_fit_the_table(tmp_path, interrupted):
