@@ -163,6 +163,25 @@ def test_gmsh_of_the_user_is_left_alone(users_gmsh):
     assert gmsh.option.getNumber("Mesh.ElementOrder") == 2
 
 
+def test_nothing_is_asked_of_a_gmsh_that_is_not_initialised(monkeypatch):
+    """It may end the process, by chance and without a word."""
+
+    class Recorded:
+        def __init__(self, library):
+            self._library, self.called = library, []
+
+        def __getattr__(self, name):
+            self.called.append(name)
+            return getattr(self._library, name)
+
+    library = Recorded(gmsh.lib)
+    monkeypatch.setattr(gmsh, "lib", library)
+    rectangle(W, H, 0.008, 0.001)
+    asked = [name for name in library.called if name != "gmshIsInitialized"]
+    assert asked[0] == "gmshInitialize"
+    assert asked[-1] == "gmshFinalize"
+
+
 def test_meshing_is_silent_and_keeps_the_handler_of_interrupts(capfd):
     def handler(signum, frame):
         raise KeyboardInterrupt

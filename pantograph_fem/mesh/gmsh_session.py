@@ -27,6 +27,9 @@ _OPTIONS: dict[str, float] = {
     "Mesh.MeshSizeMax": 1e22,
 }
 
+#: A seed that no user has, by which a gmsh that was just initialised is known.
+_MARK = 795_028_841
+
 
 @contextmanager
 def gmsh_model() -> Iterator[ModuleType]:
@@ -38,9 +41,7 @@ def gmsh_model() -> Iterator[ModuleType]:
     with _interrupt_handler_kept():
         import gmsh
 
-        ours = not _is_initialized(gmsh)
-        if ours:
-            gmsh.initialize(readConfigFiles=False)
+        ours = _initialize(gmsh)
     previous_model = "" if ours else gmsh.model.getCurrent()
     previous_options = {name: gmsh.option.getNumber(name) for name in _OPTIONS}
     try:
@@ -72,18 +73,30 @@ def _interrupt_handler_kept() -> Iterator[None]:
             signal.signal(signal.SIGINT, handler)
 
 
-def _is_initialized(gmsh: ModuleType) -> bool:
+def _initialize(gmsh: ModuleType) -> bool:
+    """Initialise gmsh where it was not, and tell whether it was not."""
     if hasattr(gmsh, "isInitialized"):
-        return bool(gmsh.isInitialized())
-    # Before 4.9 one can only ask for something and see whether it comes: without initialisation
-    # gmsh answers with nothing or an exception, and complains on the C library's standard error.
+        ours = not gmsh.isInitialized()
+        if ours:
+            gmsh.initialize(readConfigFiles=False)
+        return ours
+    # Before 4.9 nothing may be asked of a gmsh that is not initialised: what it does about this
+    # error it reads from memory that nobody has set, and once in a hundred times it ends the
+    # process without a word. Where it was initialised, it ignores what comes with a second time.
+    arguments = ["pantograph_fem", "-setnumber", "Mesh.RandomSeed", str(_MARK)]
+    with _stderr_off():
+        gmsh.initialize(arguments, readConfigFiles=False)
+    return bool(gmsh.option.getNumber("Mesh.RandomSeed") == _MARK)
+
+
+@contextmanager
+def _stderr_off() -> Iterator[None]:
+    """Without what C libraries write to standard error."""
     saved = os.dup(2)
     with open(os.devnull, "w") as nowhere:
         os.dup2(nowhere.fileno(), 2)
     try:
-        return bool(gmsh.option.getString("General.Version"))
-    except Exception:
-        return False
+        yield
     finally:
         os.dup2(saved, 2)
         os.close(saved)
