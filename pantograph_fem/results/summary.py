@@ -100,12 +100,15 @@ def write_summary(
 
 
 def package_versions() -> dict[str, str]:
-    """Return the versions of Python and of the packages a run rests on, importing none."""
+    """Return the versions of Python and of the packages a run rests on, importing none.
+
+    Debian's gmsh is no distribution; only the module knows, where the run has needed it.
+    """
     versions = {"python": platform.python_version()}
     for name, distribution in PACKAGES.items():
         try:
             versions[name] = metadata.version(distribution)
         except metadata.PackageNotFoundError:
-            # Debian's gmsh is no distribution; the module knows, if the run has needed it
-            versions[name] = getattr(sys.modules.get(name), "__version__", "unknown")
+            if name in sys.modules:
+                versions[name] = getattr(sys.modules[name], "__version__", "unknown")
     return versions
