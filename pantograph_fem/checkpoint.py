@@ -103,7 +103,7 @@ def is_there(directory: Path, comm: MPI.Comm, case: Case) -> bool:
     Raises
     ------
     CaseError
-        If it is damaged, or belongs to another case.
+        If it is damaged, of an earlier version of the program, or belongs to another case.
     """
     path = directory / NAME
 
@@ -115,6 +115,11 @@ def is_there(directory: Path, comm: MPI.Comm, case: Case) -> bool:
                 raise CaseError(
                     f"{path} belongs to another case: only the sections {', '.join(sorted(_FREE))} "
                     "may differ from those of the interrupted run; start anew without --resume"
+                )
+            if "unknowns" not in file.files:
+                raise CaseError(
+                    f"{path} was written by an earlier version of pantograph_fem, which did not "
+                    "say what its numbers stand for; start anew without --resume"
                 )
         return True
 

@@ -146,17 +146,35 @@ def test_another_case_is_not_taken_for_the_interrupted_one(tmp_path, interrupted
 def test_another_mesh_of_the_same_case_is_not_taken_for_the_first(tmp_path, interrupted):
     """As another version of the mesher would make."""
     interrupted(tmp_path, "before the state is recorded")
-    path = tmp_path / checkpoint.NAME
 
-    def move_a_node():
-        with np.load(path) as file:
-            arrays = dict(file)
+    def move_a_node(arrays):
         arrays["unknowns"][0, 1] += 1e-3
-        np.savez(path, **arrays)
 
-    at_root(WORLD, move_a_node)
+    change_checkpoint(tmp_path, move_a_node)
     with pytest.raises(CaseError, match=r"belongs to another mesh.*without --resume"):
         run(variant(), tmp_path, resume=True, quiet=True)
+
+
+def test_a_checkpoint_that_does_not_say_what_its_numbers_are_is_refused(tmp_path, interrupted):
+    interrupted(tmp_path, "before the state is recorded")
+    change_checkpoint(tmp_path, lambda arrays: arrays.pop("unknowns"))
+    before = (tmp_path / "history.csv").read_text()
+    with pytest.raises(CaseError, match=r"earlier version.*without --resume"):
+        run(variant(), tmp_path, resume=True, quiet=True)
+    assert (tmp_path / "history.csv").read_text() == before
+
+
+def change_checkpoint(directory, change):
+    """Change its arrays, given by name."""
+
+    def rewrite():
+        path = directory / checkpoint.NAME
+        with np.load(path) as file:
+            arrays = dict(file)
+        change(arrays)
+        np.savez(path, **arrays)
+
+    at_root(WORLD, rewrite)
 
 
 def test_other_probes_do_not_fit_the_table(tmp_path, interrupted):

@@ -326,20 +326,6 @@ def test_critical_points_found_before_an_interruption_are_kept_and_none_is_doubl
     np.testing.assert_allclose(loads, [point["load"] for point in on_and_on], rtol=1e-6)
 
 
-@pytest.mark.skipif(SEVERAL, reason="each process would write one")
-def test_a_checkpoint_of_an_earlier_version_is_taken_up(tmp_path, on_and_on):
-    """It holds no critical points: those that come are found."""
-    case = case_from_dict(ON_AND_ON)
-    interrupt(case, tmp_path, after=on_and_on[0]["step"] + 3)
-    path = tmp_path / "checkpoint.npz"
-    with np.load(path) as file:
-        old = {name: file[name] for name in file.files if name != "critical_points"}
-    np.savez(path, **old)
-    run(case, tmp_path, resume=True, quiet=True)
-    (point,) = json.loads((tmp_path / "summary.json").read_text())["critical_points"]
-    assert point["load"] == pytest.approx(on_and_on[1]["load"], rel=1e-6)
-
-
 def interrupt(case, folder, after):
     """Run it until it has written so many states and dies at the next."""
     with pytest.MonkeyPatch.context() as patch:
