@@ -15,7 +15,7 @@ from pantograph_fem.errors import CaseError
 from pantograph_fem.results.history import read_history
 
 from .conftest import COARSE, merged, run
-from .test_resume import PowerCut
+from .test_resume import PowerCut, mortal
 
 pytestmark = pytest.mark.core
 
@@ -104,16 +104,8 @@ def test_other_runs_have_no_accuracy_and_leave_no_mesh(tmp_path, result):
 
 
 def test_an_interrupted_run_goes_on_with_its_mesh(tmp_path, result, monkeypatch):
-    save, calls = checkpoint.save, []
-
-    def mortal(*arguments):
-        calls.append(None)
-        if len(calls) == 3:
-            raise PowerCut
-        save(*arguments)
-
     with monkeypatch.context() as patch:
-        patch.setattr(checkpoint, "save", mortal)
+        patch.setattr(checkpoint, "save", mortal(checkpoint.save, survived=2))
         with pytest.raises(PowerCut):
             run(easy(), tmp_path, quiet=True)
     monkeypatch.setattr("pantograph_fem.adapt.adapted_sheet.adapt", None)  # once is enough

@@ -1,6 +1,5 @@
 """What several processes find together is what one finds alone."""
 
-import itertools
 import json
 from contextlib import nullcontext
 
@@ -18,7 +17,7 @@ from pantograph_fem.results.history import read_history
 from .conftest import COARSE, merged
 from .processes import SEVERAL, WORLD
 from .test_adapt_run import EASY
-from .test_resume import PowerCut
+from .test_resume import PowerCut, mortal
 from .test_run_kinds import BEAM, CHAIN, LATTICE
 from .test_stability_cases import COLUMN, UPRIGHT, critical_load
 
@@ -138,18 +137,6 @@ def test_a_run_is_taken_up_by_more_or_fewer_processes(name, after, tmp_path, mon
         assert_same(found[column], expected[column], size_of(column, expected), column)
     if (parts / "fields.xdmf").exists():
         assert_same_fields(*map(read_fields, (parts, whole)))
-
-
-def mortal(save, survived):
-    """Saves so many checkpoints; then the power is cut."""
-    calls = itertools.count()
-
-    def save_or_die(*arguments):
-        if next(calls) == survived:
-            raise PowerCut
-        save(*arguments)
-
-    return save_or_die
 
 
 def size_of(column, history):

@@ -1,5 +1,7 @@
 """A run that was interrupted goes on as if nothing had happened."""
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -35,6 +37,18 @@ class PowerCut(BaseException):
     """What no part of a run is prepared for."""
 
 
+def mortal(function, survived):
+    """The function, which can be called so many times; then the power is cut."""
+    calls = itertools.count()
+
+    def call_or_die(*arguments):
+        if next(calls) == survived:
+            raise PowerCut
+        return function(*arguments)
+
+    return call_or_die
+
+
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
     """The same run without an interruption."""
@@ -50,16 +64,8 @@ def interrupted(monkeypatch):
             "before the state is recorded": (Recorder, "accepted"),
             "before it is the checkpoint": (checkpoint, "save"),
         }[moment]
-        original, calls = getattr(owner, name), []
-
-        def mortal(*arguments):
-            calls.append(None)
-            if len(calls) == 6:
-                raise PowerCut
-            return original(*arguments)
-
         with monkeypatch.context() as patch:
-            patch.setattr(owner, name, mortal)
+            patch.setattr(owner, name, mortal(getattr(owner, name), survived=5))
             with pytest.raises(PowerCut):
                 run(case or variant(), directory, quiet=True)
 
