@@ -23,6 +23,8 @@ def same_points(points: NDArray[np.float64], known: NDArray[np.float64]) -> NDAr
     """
     if points.shape != known.shape:
         raise ValueError(f"{len(known)} points are known, and {len(points)} are there")
+    if not len(known):  # a process may have none
+        return np.empty(0, dtype=np.int64)
     extent = np.ptp(known, axis=0)
     extent[extent == 0.0] = np.abs(known).max() or 1.0
     if np.abs((points - known) / extent).max() < _ROUND_OFF:

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from dolfinx import fem
 
 from .. import dolfinx_api as api
+from ..numbering import same_points
 
 
 @dataclass(frozen=True)
@@ -77,6 +77,5 @@ def _part(space: fem.FunctionSpace, index: int) -> tuple[fem.FunctionSpace, NDAr
     """
     part, dofs = space.sub(index).collapse()
     own = api.functionspace(space.mesh, part.ufl_element())
-    places = cKDTree(part.tabulate_dof_coordinates())
-    _, blocks = places.query(own.tabulate_dof_coordinates())
+    blocks = same_points(part.tabulate_dof_coordinates(), own.tabulate_dof_coordinates())
     return own, np.asarray(dofs, dtype=np.int32).reshape(-1, own.dofmap.index_map_bs)[blocks]
