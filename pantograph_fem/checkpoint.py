@@ -62,15 +62,21 @@ def fingerprint(case: Case) -> str:
     return digest.hexdigest()
 
 
+def gathered(comm: MPI.Comm, unknowns: Array) -> Array | None:
+    """What each unknown of every process is, on rank 0, None elsewhere; a collective call."""
+    parts = comm.gather(unknowns, root=0)
+    return None if parts is None else np.concatenate(parts)
+
+
 def save(
-    directory: Path, comm: MPI.Comm, case_fingerprint: str, unknowns: Array, saved: Saved
+    directory: Path, comm: MPI.Comm, case_fingerprint: str, unknowns: Array | None, saved: Saved
 ) -> None:
     """Replace the checkpoint of a run in one step; a collective call.
 
-    `unknowns` tells what each owned unknown is: see :attr:`.simulation.Simulation.unknowns`.
+    `unknowns` are those that were :func:`gathered`.
     """
     checkpoint = saved.checkpoint
-    own = {"unknowns": unknowns}
+    own = {}
     for i, point in enumerate(checkpoint.points):
         assert point.rate is not None  # accepted states have it
         own[f"point_{i}"] = np.column_stack([point.x, point.rate])
@@ -84,6 +90,7 @@ def save(
             "step_size": checkpoint.step_size,
             "critical_points": json.dumps(saved.critical_points),
             "loads": [point.load for point in checkpoint.points],
+            "unknowns": unknowns,
         }
         for name in own:
             arrays[name] = np.concatenate([part[name] for part in parts])
@@ -130,6 +137,7 @@ def load(directory: Path, comm: MPI.Comm, unknowns: Array) -> Saved:
     """The checkpoint of an earlier run for the unknowns that there are now; a collective call.
 
     The earlier run may have had another number of processes, or numbered its unknowns otherwise.
+    `unknowns` tells what each owned one is: see :attr:`.simulation.Simulation.unknowns`.
 
     Raises
     ------

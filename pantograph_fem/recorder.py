@@ -63,7 +63,7 @@ class Recorder:
         self._comm = comm
         # Once: it reads the mesh file, which may change while the run goes on.
         self._fingerprint = checkpoint.fingerprint(case)
-        self._unknowns = simulation.unknowns
+        self._unknowns = checkpoint.gathered(comm, simulation.unknowns)
         self._progress = Progress(
             case.title or case.name,
             quiet=quiet or comm.rank != 0,

@@ -92,7 +92,7 @@ class LatticeEquilibrium:
     def unknowns(self) -> Array:
         """Component and number of the node of each owned unknown, shape (n, 3).
 
-        Places would not do: nodes may share one.
+        On any number of processes the nodes have the same numbers.
         """
         nodes = np.repeat(np.arange(self._first, self._last), 2)
         return np.column_stack([np.arange(len(nodes)) % 2, nodes, np.zeros(len(nodes))])
